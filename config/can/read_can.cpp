@@ -266,11 +266,53 @@ void read_arrival_jitter(MapReader& reader, CanLayout& can) {
     }
 }
 
-void read_receiver_rules(MapReader& reader, CanLayout& can) {
+void read_period(MapReader& reader, CanLayout& can) {
     reader.whole("sample_us", Need::optional, {50, 100'000}, can.sample_us);
     read_arrival_jitter(reader, can);
-    // A frame of a drive that is lost costs its sample and the next: docs/reference/protocol.md.
-    can.stale_after_us = (can.format == CanFormat::cia402 ? 4 : 3) * can.sample_us;
+}
+
+/// One number, or the least and the most.
+void read_permit_samples(MapReader& reader, CanLayout& can, FaultList& faults) {
+    // A hole of 9 classical samples counts as late already, and one of 16 looks like none. With one
+    // sample no permit is ever a period ahead of its end.
+    const WholeRange range{2, can.format == CanFormat::classical ? 12U : 15U};
+    const std::string wanted = "an integer from " + std::to_string(range.min) + " to " +
+                               std::to_string(range.max) + ", or two of them: [least, most]";
+    can.permit_samples = can.permit_version == 2 ? kPermitSamplesUsual : PermitSamples{};
+    const YamlNode* node = reader.find("permit_samples", Need::optional, wanted);
+    if (node == nullptr) {
+        return;
+    }
+    const bool is_list = node->kind == YamlNode::Kind::sequence;
+    if (is_list && node->entries.size() != 2) {
+        reader.report("permit_samples", "a list of " + std::to_string(node->entries.size()),
+                      wanted);
+        return;
+    }
+    const std::string path = reader.path_of("permit_samples");
+    std::array<std::uint32_t, 2> ends{};
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+        const YamlNode& one = is_list ? node->entries[i].value : *node;
+        if (!read_whole({one, path, faults}, range, false, ends[i])) {
+            return;
+        }
+    }
+    if (ends[0] > ends[1]) {
+        reader.report("permit_samples", shown(*node), "[least, most], the least first");
+    } else if (ends[0] != ends[1] && can.permit_version != 2) {
+        reader.report("permit_samples", shown(*node) + " with permit: 1",
+                      "one integer; only a permit of version 2 carries its own n");
+    } else {
+        can.permit_samples = {static_cast<std::uint8_t>(ends[0]),
+                              static_cast<std::uint8_t>(ends[1])};
+    }
+}
+
+void read_receiver_rules(MapReader& reader, CanLayout& can) {
+    // A snapshot is of no use when the longest permit for it has run out. A frame of a drive that
+    // is lost costs its sample and the next: docs/reference/protocol.md.
+    const std::uint32_t least = can.format == CanFormat::cia402 ? 4 : 3;
+    can.stale_after_us = std::max(least, std::uint32_t{can.permit_samples.most}) * can.sample_us;
     if (reader.whole("stale_after_us", Need::optional, {50, 1'000'000}, can.stale_after_us) &&
         can.stale_after_us < can.sample_us) {
         reader.report("stale_after_us", std::to_string(can.stale_after_us),
@@ -286,7 +328,6 @@ void read_receiver_rules(MapReader& reader, CanLayout& can) {
                       "at least sample_us, " + std::to_string(can.sample_us) +
                           "; a board may send its heartbeat with its samples");
     }
-    read_small(reader, "permit_samples", {1, 10}, can.permit_samples);
     read_small(reader, "frozen_samples", {2, 100'000}, can.frozen_samples);
     read_small(reader, "counter_delta_max", {1, 13}, can.counter_delta_max);
 }
@@ -407,12 +448,14 @@ void read_can(MapReader& top, MachineDraft& draft) {
     reader.choice("format", Need::optional, kSources, source);
     draft.can_source = static_cast<CanSource>(source);
     draft.machine.can.format = format_of(draft.can_source);
-    read_receiver_rules(reader, draft.machine.can);
+    read_period(reader, draft.machine.can);
     read_signals(reader, draft);
     read_look_ahead(reader, draft);
     read_dbc(reader, draft);
     read_drives(reader, draft);
     read_permit_version(reader, draft.machine.can);
+    read_permit_samples(reader, draft.machine.can, draft.faults);
+    read_receiver_rules(reader, draft.machine.can);
     read_hashes(reader, draft.machine.can);
     read_frame_ids(reader, draft);
     if (is_native(draft.machine.can)) {

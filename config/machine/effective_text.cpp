@@ -182,7 +182,10 @@ void add_can(Lines& lines, const CanLayout& can) {
     for (std::size_t i = 0; i < can.quick_stop_ids.size(); ++i) {
         lines.add("can.quick_stop[" + std::to_string(i) + "]", can.quick_stop_ids[i]);
     }
-    lines.add("can.permit_samples", can.permit_samples);
+    lines.add("can.permit_samples", can.permit_samples.least);
+    if (can.permit_samples.most != can.permit_samples.least) {
+        lines.add("can.permit_samples_most", can.permit_samples.most);
+    }
     lines.add("can.counter_delta_max", can.counter_delta_max);
     lines.add("can.sync_counter_init", can.sync_counter_init);
     lines.add("can.stale_after_us", can.stale_after_us);
@@ -287,7 +290,7 @@ ConfigurationHashes configuration_hashes(const Machine& machine, const MachineMe
     const std::array<Part, kHashParts> parts{
         Part{{"pair.", "exclusion."}, &meshes.bodies}, Part{{"bodies."}},
         Part{{"tools.", "first_tool "}, &meshes.tools},
-        Part{{"axes.", "guard.", "can.sample_us ", "can.permit_samples "}}};
+        Part{{"axes.", "guard.", "can.sample_us ", "can.permit_samples"}}};
     const std::string text = effective_text(machine);
     ConfigurationHashes out;
     for (std::size_t i = 0; i < kHashParts; ++i) {

@@ -228,7 +228,11 @@ void fill_can(YamlNode& map, const CanLayout& can) {
     }
     fill(map, "permit", value_of(std::uint32_t{can.permit_version}));
     fill(map, "hashes", value_of(can.hashes_in_id != 0 ? "required" : "none"));
-    fill(map, "permit_samples", value_of(std::uint32_t{can.permit_samples}));
+    const PermitSamples samples = can.permit_samples;
+    fill(map, "permit_samples",
+         samples.least == samples.most ? value_of(std::uint32_t{samples.least})
+                                       : list_of({value_of(std::uint32_t{samples.least}),
+                                                  value_of(std::uint32_t{samples.most})}));
     fill(map, "stale_after_us", value_of(can.stale_after_us));
     fill(map, "frozen_samples", value_of(can.frozen_samples));
     fill(map, "counter_delta_max", value_of(std::uint32_t{can.counter_delta_max}));

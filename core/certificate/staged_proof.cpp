@@ -60,8 +60,8 @@ std::optional<StagedProver> StagedProver::create(const Machine& machine, std::ui
     return prover;
 }
 
-/// A group for each task that is open, all with the same share.
-void StagedProver::deal_groups(const WorkLists& lists, std::uint32_t open) noexcept {
+/// A group for each task that is open.
+void StagedProver::deal_groups(std::uint32_t open) noexcept {
     std::fill(group_of_.begin(), group_of_.end(), kNoIndex);
     group_count_ = 0;
     for (const BoxItem& item : items_.first(open)) {
@@ -69,8 +69,6 @@ void StagedProver::deal_groups(const WorkLists& lists, std::uint32_t open) noexc
             group_of_[item.task] = group_count_++;
         }
     }
-    const WorkLists share = group_count_ == 0 ? WorkLists{} : share_of(lists, group_count_);
-    std::fill_n(groups_.begin(), group_count_, GroupWork{.share = share});
 }
 
 /// Halves of the nodes from `begin` on become nodes. Lazily, none of one that is proven.
@@ -149,14 +147,10 @@ bool StagedProver::run(const Engine& engine, StagedWork& work) noexcept {
     return lost_ == QueryStatus::ok;
 }
 
-/// Trees of this depth below the nodes that there are; depth 0: those nodes themselves.
+/// Trees of this depth below the nodes that there are.
 bool StagedProver::run_stage(const Engine& engine, std::span<const JointBoxTask> tasks,
                              std::uint32_t depth, bool is_last, StagedWork& work) noexcept {
     const bool is_lazy = !engine.prefers_batches;
-    if (depth == 0) {
-        ask(tasks, 0, node_count_);
-        return run(engine, work);
-    }
     std::uint32_t begin = 0;
     for (std::uint32_t level = 1; level <= depth; ++level) {
         const std::uint32_t first = node_count_;
@@ -182,6 +176,65 @@ bool StagedProver::run_stage(const Engine& engine, std::span<const JointBoxTask>
         }
     }
     return true;
+}
+
+/// Whole boxes of the first `own` tasks, and those of the second half. Where that saves time, a
+/// task whose larger box is far is not asked again.
+bool StagedProver::run_first(const Engine& engine, std::span<const JointBoxTask> tasks,
+                             std::uint32_t own, StagedWork& work) noexcept {
+    if (engine.prefers_batches || own == tasks.size()) {
+        ask(tasks, 0, node_count_);
+        return run(engine, work);
+    }
+    std::uint32_t first_wider = 0;
+    while (first_wider < node_count_ && items_[first_wider].task < own) {
+        ++first_wider;
+    }
+    const std::uint32_t wider = node_count_ - first_wider;
+    ask(tasks, first_wider, wider);
+    if (wider != 0 && !run(engine, work)) {
+        return false;
+    }
+    std::uint32_t next = first_wider;
+    for (std::uint32_t i = 0; i < first_wider; ++i) {
+        const std::uint32_t twin = items_[i].task + own;
+        while (next < node_count_ && items_[next].task < twin) {
+            ++next;
+        }
+        const bool is_asked = next < node_count_ && items_[next].task == twin;
+        nodes_[i].is_covered = is_asked && nodes_[next].is_covered &&
+                               first_full(groups_[group_of_[twin]]) == QueryStatus::ok;
+        if (!nodes_[i].is_covered) {
+            ask(tasks, i, 1);
+        }
+    }
+    return (query_count_ == 0 && wider != 0) || run(engine, work);
+}
+
+/// The first stage is over: what it proved of a larger box it proved of the task, and what it did
+/// not is not asked again. Returns how many stay open.
+std::uint32_t StagedProver::take_wider(std::span<JointBoxResult> results, std::uint32_t own,
+                                       std::uint32_t open) const noexcept {
+    for (const BoxItem& item : items_.first(open)) {
+        if (item.task >= own) {
+            results[item.task].proof = JointBoxProof::budget_spent;
+        }
+    }
+    std::uint32_t kept = 0;
+    for (std::uint32_t i = 0; i < open; ++i) {
+        const std::uint32_t task = items_[i].task;
+        if (task < own && results[task + own].proof != JointBoxProof::proven) {
+            items_[kept++] = items_[i];
+        }
+    }
+    for (std::uint32_t i = 0; i < own; ++i) {
+        if (results[i + own].proof == JointBoxProof::proven) {
+            const std::uint32_t queries = results[i].queries;
+            results[i] = results[i + own];
+            results[i].queries += queries;
+        }
+    }
+    return kept;
 }
 
 /// What a far box proves of its parts; and nothing is proven of a group whose share was spent.
@@ -233,8 +286,10 @@ std::uint32_t StagedProver::leave_open(std::span<JointBoxResult> results,
 }
 
 StagedWork StagedProver::prove(const Engine& engine, std::span<const JointBoxTask> tasks,
-                               std::span<JointBoxResult> results) noexcept {
+                               std::span<JointBoxResult> results, bool has_wider) noexcept {
     AXG_ASSERT(results.size() >= tasks.size() && tasks.size() <= group_of_.size());
+    AXG_ASSERT(!has_wider || tasks.size() % 2 == 0);
+    const auto own = static_cast<std::uint32_t>(has_wider ? tasks.size() / 2 : tasks.size());
     StagedWork work;
     lost_ = QueryStatus::ok;
     query_count_ = 0;
@@ -249,11 +304,17 @@ StagedWork StagedProver::prove(const Engine& engine, std::span<const JointBoxTas
             continue;  // a later stage may have queries enough for a level of them all
         }
         depth_left -= depth;
-        deal_groups(plan_.lists[stage], open);
+        deal_groups(open);
+        const std::uint32_t pairs = has_wider && is_first ? (group_count_ + 1) / 2 : group_count_;
+        const WorkLists share =
+            pairs == 0 ? WorkLists{}
+                       : first_share_of(plan_.lists[stage], pairs, plan_.stages == 1, has_wider);
+        std::fill_n(groups_.begin(), group_count_, GroupWork{.share = share});
         std::fill_n(nodes_.begin(), open, Node{kNoIndex, QueryStatus::not_run, true, false, true});
         node_count_ = open;
         ++work.stages;
-        if (!run_stage(engine, tasks, depth, stage + 1 == plan_.stages, work)) {
+        if (!(is_first ? run_first(engine, tasks, own, work)
+                       : run_stage(engine, tasks, depth, stage + 1 == plan_.stages, work))) {
             for (JointBoxResult& result : results.first(tasks.size())) {
                 if (result.proof != JointBoxProof::bad_box) {
                     result.proof = JointBoxProof::engine_failed;
@@ -266,6 +327,7 @@ StagedWork StagedProver::prove(const Engine& engine, std::span<const JointBoxTas
             add(work.used, group.used);
         }
         open = leave_open(results, open);
+        open = is_first && has_wider ? take_wider(results, own, open) : open;
     }
     for (const BoxItem& item : items_.first(open)) {
         JointBoxResult& result = results[item.task];

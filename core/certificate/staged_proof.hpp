@@ -35,9 +35,12 @@ class StagedProver {
                                                             std::uint32_t known_answer_mesh);
 
     /// results[i] belongs to tasks[i]. Precondition: at most the number passed to `create`.
-    /// Cost: at most the plan's queries and lists, stage by stage.
+    /// Cost: at most the plan's queries and lists, stage by stage; those of the first stage once
+    /// more where `has_wider`.
+    /// @param has_wider  the second half of the tasks are those of the first over larger boxes.
+    ///     Each is queried whole, once, in the first stage; proven, it is the first one's proof too
     StagedWork prove(const Engine& engine, std::span<const JointBoxTask> tasks,
-                     std::span<JointBoxResult> results) noexcept;
+                     std::span<JointBoxResult> results, bool has_wider = false) noexcept;
 
     [[nodiscard]] std::size_t memory_bytes() const noexcept { return arena_.size(); }
 
@@ -53,7 +56,7 @@ class StagedProver {
 
     StagedProver(const CyclePlan& plan, std::uint32_t known_answer_mesh, Arena arena) noexcept
         : plan_(plan), known_answer_mesh_(known_answer_mesh), arena_(static_cast<Arena&&>(arena)) {}
-    void deal_groups(const WorkLists& lists, std::uint32_t open) noexcept;
+    void deal_groups(std::uint32_t open) noexcept;
     void grow_level(std::span<const JointBoxTask> tasks, std::uint32_t begin,
                     bool is_lazy) noexcept;
     void ask(std::span<const JointBoxTask> tasks, std::uint32_t first,
@@ -61,6 +64,10 @@ class StagedProver {
     [[nodiscard]] bool run(const Engine& engine, StagedWork& work) noexcept;
     [[nodiscard]] bool run_stage(const Engine& engine, std::span<const JointBoxTask> tasks,
                                  std::uint32_t depth, bool is_last, StagedWork& work) noexcept;
+    [[nodiscard]] bool run_first(const Engine& engine, std::span<const JointBoxTask> tasks,
+                                 std::uint32_t own, StagedWork& work) noexcept;
+    [[nodiscard]] std::uint32_t take_wider(std::span<JointBoxResult> results, std::uint32_t own,
+                                           std::uint32_t open) const noexcept;
     void cover(std::span<JointBoxResult> results) noexcept;
     std::uint32_t leave_open(std::span<JointBoxResult> results, std::uint32_t roots) noexcept;
 

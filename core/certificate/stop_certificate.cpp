@@ -41,10 +41,10 @@ AxisLimits stop_limits(const Machine& machine, std::uint32_t axis) noexcept {
             .stop_turns_round = machine.guard.stop_reversal == StopReversal::jerk_limited};
 }
 
-double free_seconds(const Machine& machine) noexcept {
+double free_seconds(const Machine& machine, std::uint32_t samples) noexcept {
     const double period_s = machine.can.sample_us * 1e-6;
-    return machine.can.permit_samples * period_s * (1 + kPeriodShare) +
-           sample_errors(machine, 0, 0).latch_jitter_s + machine.guard.board_reaction_s;
+    return samples * period_s * (1 + kPeriodShare) + sample_errors(machine, 0, 0).latch_jitter_s +
+           machine.guard.board_reaction_s;
 }
 
 SampleErrors sample_errors(const Machine& machine, std::uint32_t axis, double count) noexcept {
@@ -97,6 +97,8 @@ StopCertificate::StopCertificate(const Machine& machine, const StopOptions& opti
       path_(std::move(path)),
       arena_(std::move(arena)) {
     stride_ = history_stride(machine.can.sample_us * 1e-6);
+    samples_ = machine.can.permit_samples.least;
+    samples_try_ = samples_next_ = machine.can.permit_samples.most;
     limit_rules_ = limit_rules(machine, options_.count);
 }
 
@@ -104,8 +106,10 @@ std::optional<StopCertificate> StopCertificate::create(const Machine& machine,
                                                        std::span<const Mesh* const> surfaces,
                                                        const StopOptions& options) {
     const std::uint32_t slots = stop_tasks(machine);
+    const PermitSamples samples = machine.can.permit_samples;
+    const std::uint32_t tasks = tries_longer(samples) ? 2 * slots : slots;
     auto prover =
-        StagedProver::create(machine, slots, options.plan, known_answer_mesh_index(machine));
+        StagedProver::create(machine, tasks, options.plan, known_answer_mesh_index(machine));
     const bool has_path = machine.can.look_ahead_samples != 0;
     auto path = has_path ? LookAheadPath::create(machine, {.count = options.count}) : std::nullopt;
     const std::uint32_t pieces = has_path ? kPathPieces : 0;
@@ -115,8 +119,8 @@ std::optional<StopCertificate> StopCertificate::create(const Machine& machine,
     const std::uint32_t ladders = has_jogs ? slots : 0;
     Arena arena(Arena::size_bytes<JointBox>(pieces) +
                 Arena::size_bytes<BodyExtent>(surfaces.size()) + Arena::size_bytes<Slot>(slots) +
-                Arena::size_bytes<std::uint32_t>(slots) + Arena::size_bytes<JointBoxTask>(slots) +
-                Arena::size_bytes<JointBoxResult>(slots) + Arena::size_bytes<PairProof>(slots) +
+                Arena::size_bytes<std::uint32_t>(slots) + Arena::size_bytes<JointBoxTask>(tasks) +
+                Arena::size_bytes<JointBoxResult>(tasks) + Arena::size_bytes<PairProof>(slots) +
                 Arena::size_bytes<std::uint32_t>(slots) + Arena::size_bytes<Query>(rungs) +
                 Arena::size_bytes<QueryResult>(rungs) + Arena::size_bytes<GroupWork>(ladders) +
                 Arena::size_bytes<std::uint32_t>(ladders));
@@ -128,8 +132,8 @@ std::optional<StopCertificate> StopCertificate::create(const Machine& machine,
     certificate.extents_ = certificate.arena_.take<BodyExtent>(surfaces.size());
     certificate.slots_ = certificate.arena_.take<Slot>(slots);
     certificate.queried_ = certificate.arena_.take<std::uint32_t>(slots);
-    certificate.tasks_ = certificate.arena_.take<JointBoxTask>(slots);
-    certificate.results_ = certificate.arena_.take<JointBoxResult>(slots);
+    certificate.tasks_ = certificate.arena_.take<JointBoxTask>(tasks);
+    certificate.results_ = certificate.arena_.take<JointBoxResult>(tasks);
     certificate.proofs_ = certificate.arena_.take<PairProof>(slots);
     certificate.untested_ = certificate.arena_.take<std::uint32_t>(slots);
     certificate.rung_queries_ = certificate.arena_.take<Query>(rungs);
@@ -215,7 +219,8 @@ void StopCertificate::note_jog(bool is_first) noexcept {
 }
 
 /// A board may say the number of the next tool while the last one is still in the spindle: until no
-/// certificate from before is in force, both count; and if the number changes again, all of them.
+/// permit from before is in force, both count; and if the number changes again, all of them. An
+/// older permit may end after a newer one, so the longest counts, whatever was sent.
 void StopCertificate::note_tool(const AxisSnapshot& before, bool is_first) noexcept {
     if (is_first) {
         tool_until_ = {};
@@ -225,7 +230,8 @@ void StopCertificate::note_tool(const AxisSnapshot& before, bool is_first) noexc
     const bool are_known = judge_snapshot(*machine_, before, was) == SnapshotStatus::ok &&
                            judge_snapshot(*machine_, snapshot_, is) == SnapshotStatus::ok;
     if (are_known && was != is && was != kNoIndex) {
-        const double samples = std::ceil(free_seconds(*machine_) * 1e6 / machine_->can.sample_us);
+        const double longest_s = free_seconds(*machine_, machine_->can.permit_samples.most);
+        const double samples = std::ceil(longest_s * 1e6 / machine_->can.sample_us);
         tool_until_[was] = snapshot_.sample + static_cast<std::uint64_t>(samples) + 1;
     }
 }
@@ -248,8 +254,8 @@ AxisRange StopCertificate::now(std::uint32_t axis) const noexcept {
     return range;
 }
 
-JointBox StopCertificate::reach() const noexcept {
-    const double free_s = free_seconds(*machine_);
+JointBox StopCertificate::reach(std::uint32_t samples) const noexcept {
+    const double free_s = free_seconds(*machine_, samples);
     JointBox box;
     for (std::uint32_t i = 0; i < machine_->axes.size(); ++i) {
         const Axis& axis = machine_->axes[i];
@@ -266,14 +272,14 @@ JointBox StopCertificate::reach() const noexcept {
 }
 
 /// All axes where they stand, and the one of the jog as far as it may get.
-JointBox StopCertificate::jog_box() const noexcept {
+JointBox StopCertificate::jog_box(std::uint32_t samples) const noexcept {
     JointBox box;
     for (std::uint32_t i = 0; i < machine_->axes.size(); ++i) {
         const double at = snapshot_.position[i], error = held_error(i);
         ReachRange range{at - error, at + error};
         if (i == jog_.move().axis) {
             const AxisLimits limits = jog_limits(machine_->guard.jog, machine_->axes[i]);
-            const double reach = jog_reach(limits, free_seconds(*machine_));
+            const double reach = jog_reach(limits, free_seconds(*machine_, samples));
             const bool turns_round = machine_->guard.stop_reversal == StopReversal::jerk_limited;
             const double back = turns_round ? jog_turn_reach(limits) : 0;
             range.low -= jog_.move().is_negative ? reach : back;
@@ -415,15 +421,15 @@ bool StopCertificate::bound_path(double free_s) noexcept {
     return true;
 }
 
-/// What is queried. False: too little is known.
-bool StopCertificate::bound_box() noexcept {
+/// What is queried, with a permit that is valid for so many samples. False: too little is known.
+bool StopCertificate::bound_box(std::uint32_t samples) noexcept {
     queried_pieces_ = {};
     if (jog_.is_on()) {
         is_path_known_ = false;
-        box_ = jog_box();
+        box_ = jog_box(samples);
         return true;
     }
-    is_path_known_ = path_ && bound_path(free_seconds(*machine_));
+    is_path_known_ = path_ && bound_path(free_seconds(*machine_, samples));
     if (is_path_known_) {
         return true;
     }
@@ -431,7 +437,7 @@ bool StopCertificate::bound_box() noexcept {
         box_ = {.centre = snapshot_.position, .half = {}};
         return false;
     }
-    box_ = reach();
+    box_ = reach(samples);
     return history_.count > 1;  // one snapshot says nothing about speed
 }
 
@@ -453,11 +459,31 @@ void StopCertificate::list_tasks() noexcept {
     }
 }
 
+/// A permit is as long as the shortest that a pair was proven with.
+void StopCertificate::take_wider() noexcept {
+    bool are_all_proven = true;
+    for (std::uint32_t i = 0; i < proof_count_; ++i) {
+        const bool is_proven = results_[proof_count_ + i].proof == JointBoxProof::proven;
+        are_all_proven = are_all_proven && is_proven;
+        if (is_proven) {
+            tasks_[i].box = wider_box_;
+            tasks_[i].pieces = {};
+        }
+    }
+    const PermitSamples range = machine_->can.permit_samples;
+    samples_ = are_all_proven ? samples_try_ : range.least;
+    samples_next_ =
+        are_all_proven ? samples_above(range, samples_try_) : samples_below(range, samples_try_);
+}
+
 void StopCertificate::prove(const Engine& engine,
                             const ContainmentTest& containment_test) noexcept {
     proof_count_ = containment_tests_ = 0;
     work_ = {};
     is_path_known_ = false;
+    const PermitSamples range = machine_->can.permit_samples;
+    samples_ = range.least;
+    samples_next_ = samples_try_;
     status_ = judge_snapshot(*machine_, snapshot_, tool_);
     if (status_ == SnapshotStatus::ok && (has_left_path_ || has_left_jog_)) {
         status_ = has_left_jog_ ? SnapshotStatus::left_jog : SnapshotStatus::left_path;
@@ -469,7 +495,11 @@ void StopCertificate::prove(const Engine& engine,
     if (status_ != SnapshotStatus::ok) {
         return;
     }
-    bool is_known = bound_box();
+    has_wider_ = tries_longer(range) && bound_box(samples_try_);
+    const bool is_wider_path = is_path_known_;
+    wider_box_ = box_;
+    bool is_known = bound_box(range.least);
+    has_wider_ = has_wider_ && is_wider_path == is_path_known_;
     list_tasks();
     if (jog_.is_on()) {
         is_known = keep_floors(engine);
@@ -477,7 +507,17 @@ void StopCertificate::prove(const Engine& engine,
     // No permit can follow a snapshot that too little is known about: the known-answer test alone
     // is queried.
     const std::uint32_t proven = is_known ? proof_count_ : 0;
-    work_ = prover_.prove(engine, tasks_.first(proven), results_.first(proven));
+    has_wider_ = has_wider_ && is_known;
+    for (std::uint32_t i = 0; has_wider_ && i < proof_count_; ++i) {  // in one box each
+        JointBoxTask& task = tasks_[proof_count_ + i] = tasks_[i];
+        task.box = wider_box_;
+        task.pieces = {};
+    }
+    const std::uint32_t asked = has_wider_ ? 2 * proven : proven;
+    work_ = prover_.prove(engine, tasks_.first(asked), results_.first(asked), has_wider_);
+    if (has_wider_) {
+        take_wider();
+    }
     for (std::uint32_t i = proven; i < proof_count_; ++i) {
         results_[i] = {.proof = JointBoxProof::budget_spent, .open = box_};
     }
@@ -538,6 +578,7 @@ void StopCertificate::test_containment(const ContainmentTest& containment_test) 
 
 void StopCertificate::keep() noexcept {
     is_limit_judged_ = true;
+    samples_try_ = samples_next_;
     std::uint32_t next = 0;
     for (std::uint32_t i = 0; i < slot_count_; ++i) {
         const bool is_queried = next < proof_count_ && queried_[next] == i;

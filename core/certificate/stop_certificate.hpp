@@ -17,6 +17,7 @@
 #include "core/certificate/look_ahead_path.hpp"
 #include "core/certificate/motion_history.hpp"
 #include "core/certificate/pair_queries.hpp"
+#include "core/certificate/permit_ladder.hpp"
 #include "core/certificate/staged_proof.hpp"
 #include "core/collision/containment.hpp"
 #include "core/collision/engine.hpp"
@@ -27,8 +28,8 @@
 namespace axg {
 
 /// From the instant a sample was latched until the board must have begun to brake, s: the permit
-/// for it has run out, and the board has reacted.
-[[nodiscard]] double free_seconds(const Machine& machine) noexcept;
+/// for it, valid for so many samples, has run out, and the board has reacted.
+[[nodiscard]] double free_seconds(const Machine& machine, std::uint32_t samples) noexcept;
 
 /// Errors of the positions that a board's frames report.
 /// @param count  mm or rad of one count on the wire
@@ -65,8 +66,9 @@ struct StopCycle {
     // Enough snapshots were seen to know speeds and accelerations as well as they can be known; or
     // the path is known as far as a stop may need it.
     bool is_settled = false;
-    bool is_jog = false;     // proven of the jog that the board reports, and of nothing else
-    bool is_moving = false;  // the board says that its axes move
+    std::uint8_t samples = 0;  // n: all of it is proven of a permit that is valid for so many
+    bool is_jog = false;       // proven of the jog that the board reports, and of nothing else
+    bool is_moving = false;    // the board says that its axes move
     std::span<const PairProof> proofs{};
     LimitFact limit{};  // for left_limits
 };
@@ -94,8 +96,9 @@ class StopCertificate {
     /// What was proven becomes what the next position is looked for in.
     void keep() noexcept;
 
-    /// Where the axes can get, from the newest snapshot to standstill, each by itself.
-    [[nodiscard]] JointBox reach() const noexcept;
+    /// Where the axes can get, from the newest snapshot to standstill, each by itself, if the
+    /// permit is valid for so many samples.
+    [[nodiscard]] JointBox reach(std::uint32_t samples) const noexcept;
 
     // Of the last `prove`:
     [[nodiscard]] StopCycle cycle() const noexcept {
@@ -103,6 +106,7 @@ class StopCertificate {
                 .known_answer_signature = work_.known_answer_signature,
                 .is_settled = is_path_known_ || jog_.is_on() ||
                               (!keeps_path() && !has_left_path_ && history_.count == kSamplesKept),
+                .samples = samples_,
                 .is_jog = jog_.is_on(),
                 .is_moving = snapshot_.mode == kModeMoving,
                 .proofs = proofs_.first(proof_count_),
@@ -157,7 +161,7 @@ class StopCertificate {
     void watch_limits(bool is_first) noexcept;
     void note_jog(bool is_first) noexcept;
     void note_tool(const AxisSnapshot& before, bool is_first) noexcept;
-    [[nodiscard]] JointBox jog_box() const noexcept;
+    [[nodiscard]] JointBox jog_box(std::uint32_t samples) const noexcept;
     [[nodiscard]] bool keep_floors(const Engine& engine) noexcept;
     void find_floors(const Engine& engine) noexcept;
     void find_lower_floors(const Engine& engine, std::span<const Pose> moved,
@@ -170,8 +174,9 @@ class StopCertificate {
     [[nodiscard]] double floor_before(const Slot& slot) const noexcept;
     [[nodiscard]] bool is_in(const JointBox& box, const JointPath& path) const noexcept;
     void list_tasks() noexcept;
-    [[nodiscard]] bool bound_box() noexcept;
+    [[nodiscard]] bool bound_box(std::uint32_t samples) noexcept;
     [[nodiscard]] bool bound_path(double free_s) noexcept;
+    void take_wider() noexcept;
     [[nodiscard]] bool is_inside_proven(const Slot& slot) const noexcept;
     void test_containment(const ContainmentTest& containment_test) noexcept;
 
@@ -181,11 +186,11 @@ class StopCertificate {
     StagedProver prover_;
     std::optional<LookAheadPath> path_;  // where the board sends one
     Arena arena_;
-    std::span<BodyExtent> extents_;     // [surfaces]
-    std::span<Slot> slots_;             // [pairs with each tool]
-    std::span<std::uint32_t> queried_;  // slots of the tasks
-    std::span<JointBoxTask> tasks_;
-    std::span<JointBoxResult> results_;
+    std::span<BodyExtent> extents_;      // [surfaces]
+    std::span<Slot> slots_;              // [pairs with each tool]
+    std::span<std::uint32_t> queried_;   // slots of the tasks
+    std::span<JointBoxTask> tasks_;      // and as many of the longer permit
+    std::span<JointBoxResult> results_;  // likewise
     std::span<PairProof> proofs_;
     std::span<std::uint32_t> untested_;  // proofs that want a containment test
     std::span<std::uint32_t> below_;     // where a jog begins, proofs with less than the margin
@@ -212,6 +217,10 @@ class StopCertificate {
     std::uint64_t path_until_ = 0;                // sample up to which the path is queried
     JointBox box_;                                // that is queried
     std::span<const JointBox> queried_pieces_{};  // and in which pieces, where the path is known
+    // n of the longer permit that is tried in this cycle, and that of the next; what was proven.
+    std::uint8_t samples_try_, samples_next_, samples_;
+    bool has_wider_ = false;  // it was tried
+    JointBox wider_box_;      // with it
     std::uint32_t tool_ = kNoIndex;
     std::array<std::uint64_t, kToolsMax> tool_until_{};  // the first sample at which each of those
                                                          // before it counts no more

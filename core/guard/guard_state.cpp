@@ -10,10 +10,10 @@ namespace axg {
 
 namespace {
 
-/// Of this period, young enough, proven, and the first such.
+/// Of this period, proven, the first such, and its permit would not end within a period.
 bool is_usable(const Guard& guard, const GuardEvent& event, const GuardLimits& limits) noexcept {
     return event.is_proven && event.period == guard.period && event.age_us >= 0 &&
-           event.age_us < limits.snapshot_age_us && !guard.is_proven;
+           event.age_us + limits.period_us <= event.samples * limits.period_us && !guard.is_proven;
 }
 
 /// What the end of a period says about it.
@@ -23,8 +23,7 @@ GuardInput judge_period(const Guard& guard, const GuardLimits& limits) noexcept 
         return GuardInput::period_full;
     }
     if (!guard.is_proven) {
-        return guard.silent + 1 >= limits.silent_periods ? GuardInput::period_silent
-                                                         : GuardInput::period_missed;
+        return guard.held <= 1 ? GuardInput::period_silent : GuardInput::period_missed;
     }
     if (is_bad) {
         return GuardInput::period_disturbed;
@@ -71,14 +70,16 @@ GuardInput classify(const Guard& guard, const GuardEvent& event,
 }
 
 /// Marks that belong to the period, whatever the phase.
-void mark_period(Guard& guard, GuardInput input, GuardEventKind kind) noexcept {
-    if (kind == GuardEventKind::deadline) {
+void mark_period(Guard& guard, GuardInput input, const GuardEvent& event) noexcept {
+    if (event.kind == GuardEventKind::deadline) {
         ++guard.period;
+        guard.held -= std::min(guard.held, 1U);
         guard.is_proven = false;
         guard.quiet = static_cast<std::uint8_t>(std::min(guard.quiet + 1, int{kQuiet}));
     }
     if (input == GuardInput::proven) {
         guard.is_proven = true;
+        guard.held = std::max(guard.held, event.samples + 1U);
     }
     if (input == GuardInput::fault_reported || input == GuardInput::fault_stop ||
         input == GuardInput::tx_fail) {
@@ -90,11 +91,11 @@ void mark_period(Guard& guard, GuardInput input, GuardEventKind kind) noexcept {
 void forget(Guard& guard) noexcept {
     guard.is_tested = guard.is_heard = guard.is_proven = guard.is_confirmed = false;
     guard.quiet = 0;
-    guard.good = guard.silent = guard.bad = 0;
+    guard.good = guard.held = guard.bad = 0;
 }
 
 void wait(Guard& guard) noexcept {
-    guard.good = guard.silent = 0;
+    guard.good = 0;
 }
 
 /// What a stop is remembered by; none for a stop that has its cause already.
@@ -135,15 +136,12 @@ void act(Guard& guard, GuardAction action, const GuardLimits& limits,
             break;
         case GuardAction::good:
             guard.good = std::min(guard.good + 1, limits.snapshots_min);
-            guard.silent = 0;
             guard.bad -= std::min(guard.bad, 1U);
             break;
         case GuardAction::disturbed:
-            guard.silent = 0;
             guard.bad += limits.bad_weight;
             break;
         case GuardAction::missed:
-            ++guard.silent;
             guard.bad += limits.bad_weight;
             break;
         case GuardAction::permit:
@@ -235,7 +233,8 @@ GuardEvent guard_event_of(const CycleResult& cycle, std::uint32_t period,
     return {.kind = GuardEventKind::snapshot,
             .is_proven = cycle.has_permit && cycle.reason == StopReason::none,
             .period = period,
-            .age_us = age_us};
+            .age_us = age_us,
+            .samples = cycle.samples};
 }
 
 Guard start_guard(bool is_latched) noexcept {
@@ -249,7 +248,7 @@ GuardOutput on_event(Guard& guard, const GuardEvent& event, const GuardLimits& l
     AXG_ASSERT(static_cast<std::uint32_t>(guard.phase) < kGuardPhases);
     const GuardInput input = classify(guard, event, limits);
     const GuardRow row = guard_row(input, guard.phase);
-    mark_period(guard, input, event.kind);
+    mark_period(guard, input, event);
     GuardOutput output;
     act(guard, row.action, limits, output);
     if (row.next != guard.phase) {

@@ -35,7 +35,7 @@ enum class GuardFault : std::uint8_t {
     second_guard,  // our frames from another sender
     refused,       // configuration, device or versions not fit; self-test failed
     // found here
-    silence,   // so many periods in a row without a permit
+    silence,   // the last permit has ended
     flapping,  // the leaky count of bad periods is full
     output,    // a frame did not get out while armed
     latched,   // the stop of an earlier run
@@ -75,6 +75,7 @@ struct GuardEvent {
     bool is_proven = false;    // the monitor would give a permit
     std::uint32_t period = 0;  // Guard::period when the evaluation began
     std::int64_t age_us = -1;  // of the snapshot, since it was latched; negative is no age
+    std::uint8_t samples = 0;  // n: periods after the latch that the permit would be valid for
 };
 
 /// The event of a cycle that the monitor has judged: the cycle in which it stops is a fault,
@@ -84,9 +85,8 @@ struct GuardEvent {
                                         std::int64_t age_us) noexcept;
 
 struct GuardLimits {
-    std::uint32_t snapshots_min = 10;     // good periods in a row before ready
-    std::uint32_t silent_periods = 3;     // so many in a row without a permit stop
-    std::int64_t snapshot_age_us = 3000;  // a snapshot of this age is too old
+    std::uint32_t snapshots_min = 10;  // good periods in a row before ready
+    std::int64_t period_us = 1000;     // a permit that ends sooner than in one is not sent
     // The count of bad periods leaks: one in four for ever is borne, one in three is not.
     std::uint32_t bad_weight = 3;
     std::uint32_t bad_limit = 60;
@@ -101,9 +101,11 @@ struct Guard {
     bool is_confirmed = false;            // the axes stand since this stop
     std::uint8_t quiet = 0;               // 0: a fault in this period; kQuiet: a whole one without
     std::uint32_t good = 0;               // good periods in a row, up to snapshots_min
-    std::uint32_t silent = 0;             // periods in a row without a proven snapshot
-    std::uint32_t bad = 0;                // leaky
-    std::uint32_t period = 0;             // deadlines seen, modulo 2^32
+    // Periods until the permit that ends last has ended, this one included: a newer one that is
+    // shorter takes nothing away.
+    std::uint32_t held = 0;
+    std::uint32_t bad = 0;     // leaky
+    std::uint32_t period = 0;  // deadlines seen, modulo 2^32
 };
 static_assert(std::is_trivially_copyable_v<Guard>);
 inline constexpr std::uint8_t kQuiet = 2;  // deadlines since the last fault that make no fault

@@ -21,7 +21,7 @@ enum class GuardInput : std::uint8_t {
     period_settled,    // the same, and with it everything that ready needs
     period_disturbed,  // a proven snapshot, and a fault that is only reported
     period_missed,     // no proven snapshot
-    period_silent,     // the same, too often in a row
+    period_silent,     // the same, and the permit that ends last has ended
     period_full,       // disturbed or missed, and the leaky count is full
     fault_reported,
     fault_stop,

@@ -173,6 +173,7 @@ CycleResult judge(const StopCycle& cycle, bool ready, bool is_armed) noexcept {
     CycleResult result;
     prove(cycle, result);
     result.is_jog = cycle.is_jog;
+    result.samples = cycle.samples;
     const bool is_proven = result.reason == StopReason::none;
     const bool may_wait = may_be_withheld(result.reason);
     // A machine that moves without a permit is told to stop, as soon as enough is known of it. A

@@ -41,7 +41,8 @@ struct CycleResult {
                                     // and engine
     std::uint32_t not_proven = 0;   // pairs not proven this cycle, stopped or not
     std::uint16_t known_answer_signature = 0;
-    LimitFact limit{};        // for left_limits
+    std::uint8_t samples = 0;  // n of the permit: what was proven holds for one that is so long
+    LimitFact limit{};         // for left_limits
     bool is_jog = false;      // proven of one axis that moves one way: the permit is for that alone
     Advisories advisories{};  // not of judge: whoever drives the chain adds them
 };

@@ -91,7 +91,7 @@ AxisRanges ranges_of(const Machine& machine, const StopCertificate& certificate)
 }
 
 JointBox capped_box(const Machine& machine, const AxisRanges& ranges, double share) noexcept {
-    const double free_s = free_seconds(machine);
+    const double free_s = free_seconds(machine, machine.can.permit_samples.least);
     const double lead_s = cap_lead_seconds(machine);
     JointBox box;
     for (std::uint32_t i = 0; i < machine.axes.size(); ++i) {

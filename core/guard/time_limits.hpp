@@ -19,13 +19,13 @@ inline constexpr double kEngineShare = 0.9;
 inline constexpr std::int64_t kEchoUsMin = 2000;
 
 struct TimeLimits {
-    std::int64_t period_us = 0;        // between samples
-    std::int64_t deadline_us = 0;      // from the last frame of a sample to its result
-    double engine_us = 0;              // the engine's share of it
-    std::uint32_t permit_periods = 0;  // a permit lasts: so many in a row without one stop
-    std::int64_t permit_us =
-        0;                     // so old a snapshot may be, so long guard or engine may say nothing
-    std::int64_t echo_us = 0;  // an own frame must be taken, and then seen, within it
+    std::int64_t period_us = 0;    // between samples
+    std::int64_t deadline_us = 0;  // from the last frame of a sample to its result
+    double engine_us = 0;          // the engine's share of it
+    // The longest permit: so long guard or engine may say nothing at all.
+    std::int64_t permit_us = 0;
+    std::int64_t least_permit_us = 0;  // that every permit is valid for
+    std::int64_t echo_us = 0;          // an own frame must be taken, and then seen, within it
 };
 
 [[nodiscard]] inline TimeLimits time_limits(const CanLayout& can,
@@ -34,8 +34,8 @@ struct TimeLimits {
     return {.period_us = period_us,
             .deadline_us = deadline_us,
             .engine_us = kEngineShare * static_cast<double>(deadline_us),
-            .permit_periods = can.permit_samples,
-            .permit_us = can.permit_samples * period_us,
+            .permit_us = can.permit_samples.most * period_us,
+            .least_permit_us = can.permit_samples.least * period_us,
             .echo_us = std::max(kEchoUsMin, 2 * period_us)};
 }
 [[nodiscard]] inline TimeLimits time_limits(const Machine& machine) noexcept {

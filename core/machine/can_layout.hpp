@@ -57,6 +57,18 @@ struct CanSignal {
     SignalSelector selector;
 };
 
+/// A permit for sample k is valid to k + n, and n is one of these: as long as was proven of it.
+struct PermitSamples {
+    std::uint8_t least = 3, most = 3;
+
+    friend bool operator==(const PermitSamples&, const PermitSamples&) = default;
+};
+/// Whether a cycle asks of each pair twice: with the least, and with a longer one.
+[[nodiscard]] constexpr bool tries_longer(PermitSamples samples) noexcept {
+    return samples.most > samples.least;
+}
+inline constexpr PermitSamples kPermitSamplesUsual{3, 12};  // where the permit says its n
+
 /// Ids default to docs/reference/protocol.md: motion board = node 1, guard = node 2.
 struct CanLayout {
     CanFormat format = CanFormat::classical;
@@ -91,13 +103,13 @@ struct CanLayout {
     // Where the hashes of the configuration come and go; 0, both: they are not exchanged.
     std::uint32_t hashes_in_id = 0, hashes_out_id = 0;
     std::vector<std::uint32_t> quick_stop_ids;  // of drives that are told to stop by themselves
-    std::uint8_t permit_samples = 3;            // n: a permit for sample k is valid to k + n
+    PermitSamples permit_samples;
     // Receiver rules, docs/reference/protocol.md (5d).
     std::uint8_t counter_delta_max = 3;   // 2..this = OK, some lost
     std::uint8_t sync_counter_init = 2;   // good frames before a wrong sequence is believed again
     std::uint32_t stale_after_us = 3000;  // age of the complete snapshot
     std::uint32_t frozen_samples = 100;   // mode says moving, positions bit-equal
-    std::uint32_t heartbeat_timeout_us = 30'000;  // of the board; formats of our own alone
+    std::uint32_t heartbeat_timeout_us = 65'000;  // of the board; formats of our own alone
 };
 
 /// Frames of permit version 2, in addition to those of every version.

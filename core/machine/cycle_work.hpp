@@ -53,6 +53,15 @@ struct GroupWork {
             lists.rechecks / groups};
 }
 
+/// Of the first stage, which may ask twice of each pair: each question is a group of its own, and
+/// of what is asked of the longer permit as much may be used again. Where it is the only stage both
+/// share.
+/// @param groups  of the pairs
+[[nodiscard]] constexpr WorkLists first_share_of(const WorkLists& lists, std::uint32_t groups,
+                                                 bool is_only, bool asks_twice) noexcept {
+    return share_of(lists, is_only && asks_twice ? 2 * groups : groups);
+}
+
 /// The known-answer test is a group of its own. Two tetrahedra are two leaves.
 inline constexpr WorkLists kKnownAnswerShare{
     .node_pairs = 8, .leaf_pairs = 8, .box_rows = 32, .triangle_pairs = 64, .rechecks = 64};

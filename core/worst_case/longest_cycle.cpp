@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include "core/collision/known_answer.hpp"
@@ -21,6 +22,7 @@ struct Stage {
     std::uint32_t index = 0;  // of the plan's
     std::uint32_t groups = 0, parts = 0, depth = 0;
     bool is_whole = false;
+    std::uint32_t calls = 1;  // of depth 0: each of other groups
 
     /// Queries of a group on one level of its trees.
     [[nodiscard]] std::uint32_t on_level(std::uint32_t level) const {
@@ -37,7 +39,7 @@ struct Stage {
 
 /// As StagedProver has them.
 std::vector<Stage> stages_of(const CyclePlan& plan, const CycleShape& shape) {
-    std::vector<Stage> stages{{0, shape.tasks, 1, 0, false}};
+    std::vector<Stage> stages{{0, shape.tasks, 1, 0, false, shape.asks_twice ? 2U : 1U}};
     std::uint32_t depth_left = plan.depth_max;
     for (std::uint32_t i = 1; i < plan.stages; ++i) {
         const Stage& before = stages.back();
@@ -57,7 +59,7 @@ std::vector<Stage> stages_of(const CyclePlan& plan, const CycleShape& shape) {
 std::uint32_t query_count(const CyclePlan& plan, const CycleShape& shape) {
     std::uint32_t sum = 0;
     for (const Stage& stage : stages_of(plan, shape)) {
-        sum += stage.groups * stage.of_group();
+        sum += stage.calls * stage.groups * stage.of_group();
     }
     return sum;
 }
@@ -111,7 +113,7 @@ std::uint32_t queries_of(const CycleWork& work) noexcept {
     return sum;
 }
 
-std::vector<CycleShape> cycle_shapes(const CyclePlan& plan, std::uint32_t tasks) {
+std::vector<CycleShape> cycle_shapes(const CyclePlan& plan, std::uint32_t tasks, bool asks_twice) {
     const auto most = [&plan](CycleShape shape, std::uint32_t CycleShape::*field,
                               std::uint32_t last) {
         CycleShape best = shape;
@@ -126,7 +128,7 @@ std::vector<CycleShape> cycle_shapes(const CyclePlan& plan, std::uint32_t tasks)
     opens.erase(std::unique(opens.begin(), opens.end()), opens.end());
     std::vector<CycleShape> shapes;
     for (const std::uint32_t open : opens) {
-        const CycleShape one{.tasks = tasks, .open = open};
+        const CycleShape one{.tasks = tasks, .asks_twice = asks_twice, .open = open};
         shapes.push_back(one);
         if (plan.stages > 2) {
             const CycleShape many = most(one, &CycleShape::parts, plan.queries[2] / open);
@@ -143,8 +145,16 @@ void LongestCycle::plan_calls(const CyclePlan& plan, const CycleShape& shape) {
     const std::vector<Stage> stages = stages_of(plan, shape);
     for (std::uint32_t i = 0; i < stages.size(); ++i) {
         const Stage& stage = stages[i];
-        planned_[stage.index] = {.queries = stage.groups * stage.of_group(),
-                                 .groups = stage.groups};
+        const std::uint32_t groups = stage.calls * stage.groups;
+        planned_[stage.index] = {.queries = groups * stage.of_group(), .groups = groups};
+        for (std::uint32_t more = 1; more < stage.calls; ++more) {  // the longer permit goes first
+            Call call;
+            call.stage = stage.index;
+            call.count = call.groups = stage.groups;
+            call.open.resize(call.count);
+            std::iota(call.open.begin(), call.open.end(), 0U);
+            calls_.push_back(std::move(call));
+        }
         for (std::uint32_t level = std::min(1U, stage.depth); level <= stage.depth; ++level) {
             const std::uint32_t each = stage.depth == 0 ? stage.parts : stage.on_level(level);
             if (each == 0) {
@@ -153,6 +163,7 @@ void LongestCycle::plan_calls(const CyclePlan& plan, const CycleShape& shape) {
             Call call;
             call.stage = stage.index;
             call.count = stage.groups * each;
+            call.groups = stage.groups;
             call.ends_stage = level == stage.depth;
             const bool is_last = i + 1 == stages.size();
             for (std::uint32_t query = 0; query < call.count; ++query) {
@@ -176,11 +187,13 @@ std::string LongestCycle::make_queries(const CyclePlan& plan, const CycleShape& 
     const bool overflows = shape.layout == CycleLayout::overflowing;
     std::vector<QueryDeal> deals;
     std::vector<std::uint32_t> taken;
-    std::uint32_t stage = kStagesMax;
+    std::uint32_t stage = kStagesMax, first_group = 0;
     for (Call& call : calls_) {
         if (call.stage != stage) {
             stage = call.stage;
-            WorkLists share = share_of(plan.lists[stage], planned_[stage].groups);
+            WorkLists share = stage == 0 ? first_share_of(plan.lists[0], shape.tasks,
+                                                          plan.stages == 1, shape.asks_twice)
+                                         : share_of(plan.lists[stage], planned_[stage].groups);
             share.rechecks = options.is_float_only ? 0 : share.rechecks;
             const std::uint32_t each = planned_[stage].queries / planned_[stage].groups;
             std::string fault =
@@ -189,10 +202,11 @@ std::string LongestCycle::make_queries(const CyclePlan& plan, const CycleShape& 
                 return fault;
             }
             taken.assign(planned_[stage].groups, 0);
+            first_group = 0;
         }
-        const std::uint32_t each = call.count / planned_[stage].groups;
+        const std::uint32_t each = call.count / call.groups;
         for (std::uint32_t i = 0; i < call.count; ++i) {
-            const QueryDeal& deal = deals[taken[i / each]++];
+            const QueryDeal& deal = deals[taken[first_group + i / each]++];
             std::vector<std::uint32_t>& bodies = kinds[deal];
             if (bodies.empty() || bytes < options.memory_bytes) {
                 bodies.push_back(static_cast<std::uint32_t>(bodies_.trees.size()));
@@ -202,6 +216,7 @@ std::string LongestCycle::make_queries(const CyclePlan& plan, const CycleShape& 
             call.bodies.push_back(body);
             planned_[stage].lists = added(planned_[stage].lists, work_of(deal));
         }
+        first_group += call.groups < planned_[stage].groups ? call.groups : 0;
     }
     return {};
 }

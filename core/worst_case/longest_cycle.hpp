@@ -39,6 +39,7 @@ inline constexpr std::array kCycleLayouts{CycleLayout::even, CycleLayout::heaped
 struct CycleShape {
     CycleLayout layout = CycleLayout::even;
     std::uint32_t tasks = 1;  // posed in the first stage
+    bool asks_twice = false;  // and again with a longer permit, which proves none of them
     std::uint32_t open = 1;   // of them not proven there: groups of the second stage
     std::uint32_t parts = 1;  // boxes of each that the second stage leaves to the third
 };
@@ -56,7 +57,8 @@ using CycleWork = std::array<StageWork, kStagesMax>;
 
 /// Whatever the layout: groups 1, 4, all, and as many as make most queries; in three stages the
 /// same once more with as many open parts as make most queries.
-[[nodiscard]] std::vector<CycleShape> cycle_shapes(const CyclePlan& plan, std::uint32_t tasks);
+[[nodiscard]] std::vector<CycleShape> cycle_shapes(const CyclePlan& plan, std::uint32_t tasks,
+                                                   bool asks_twice = false);
 
 class LongestCycle {
   public:
@@ -90,6 +92,7 @@ class LongestCycle {
   private:
     struct Call {
         std::uint32_t stage = 0, count = 0;
+        std::uint32_t groups = 0;  // that it asks of
         bool ends_stage = false;
         std::vector<std::uint32_t> bodies;  // [count] the first of the two of each query
         std::vector<std::uint32_t> open;    // which results say not proven

@@ -96,9 +96,9 @@ AdmissionLine judge_engine(const AdmissionFigures& figures) {
               fmt::format("raise deadline_us to {} or more, state fewer cycle.queries, simplify "
                           "meshes (simplify_mm), or on a GPU shorten capacities.batch",
                           std::ceil(timely_us(cycles) / kEngineShare)));
-    if (!(cycles.longest_us < static_cast<double>(figures.times.permit_us))) {
+    if (!(cycles.longest_us < static_cast<double>(figures.times.least_permit_us))) {
         line.is_passed = false;
-        line.found += fmt::format(", not below the permit's {} us", figures.times.permit_us);
+        line.found += fmt::format(", not below the permit's {} us", figures.times.least_permit_us);
         line.mend = "state fewer cycle.queries, or simplify meshes (simplify_mm)";
     }
     return line;

@@ -194,8 +194,9 @@ int guard_bus(const RunArguments& arguments, LoadedMachine& loaded) {
     const Engine engine = engines.engine();
     GuardChain chain(machine, engine, *engines.containment_test, parts.stop_certificate(),
                      parts.speed_advisory(), parts.margin_advisory());
-    fmt::print(stderr, "axguardd: {} on {}, {} mode, permit valid for {} us{}\n", machine.name,
-               arguments.bus, arguments.mode, time_limits(machine).permit_us,
+    fmt::print(stderr, "axguardd: {} on {}, {} mode, permits valid for {} to {} us{}\n",
+               machine.name, arguments.bus, arguments.mode, time_limits(machine).least_permit_us,
+               time_limits(machine).permit_us,
                arguments.threads.guard.accepts_local
                    ? ", accepting frames of this host as the board's"
                    : "");

@@ -40,7 +40,7 @@ BoardPlayer::BoardPlayer(const Machine& machine, const BoardTestOptions& options
 /// Cases that the machine, or the person, has no use for are findings at once.
 void BoardPlayer::choose_cases() {
     const double period_s = machine_.can.sample_us * 1e-6;
-    const double samples = machine_.can.permit_samples;
+    const double samples = machine_.can.permit_samples.most;
     const double wanted = 4 + std::ceil(machine_.guard.board_reaction_s / period_s);
     for (const BoardCase& one : board_cases()) {
         BoardFinding finding{one.name, one.rule, one.demands, Outcome::not_tested, "", 0, one.mend};
@@ -79,7 +79,8 @@ PermitWord BoardPlayer::good_word() const noexcept {
 std::uint8_t BoardPlayer::good_samples() const noexcept {
     const BoardCase* const one = current();
     const bool is_own = one != nullptr && one->samples_before >= 0;
-    return is_own ? static_cast<std::uint8_t>(one->samples_before) : machine_.can.permit_samples;
+    return is_own ? static_cast<std::uint8_t>(one->samples_before)
+                  : machine_.can.permit_samples.most;
 }
 
 bool BoardPlayer::is_jog_case() const noexcept {
@@ -218,7 +219,7 @@ void BoardPlayer::send_pair(const PermitEdit& edit, bool is_good) {
                    .sync_counter = echo,
                    .live_counter = live_,
                    .known_answer_signature = kKnownAnswerSignature,
-                   .samples = machine_.can.permit_samples,
+                   .samples = machine_.can.permit_samples.most,
                    .nonce = edit.is_former_nonce ? former_nonce_ : nonce_,
                    .lap = session->lap};
     permit = edited(permit, edit);

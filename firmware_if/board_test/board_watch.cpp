@@ -108,7 +108,7 @@ void BoardWatch::judge_tool(const AxisSnapshot& snapshot, bool is_braking) {
     if (has_tool_ && snapshot.tool != tool_) {
         const std::int64_t period_us = machine_.can.sample_us;
         const double horizon_us =
-            1.01 * static_cast<double>(machine_.can.permit_samples) *
+            1.01 * static_cast<double>(machine_.can.permit_samples.most) *
                 static_cast<double>(period_us) +
             1e6 * (machine_.guard.latch_jitter_s + machine_.guard.board_reaction_s);
         note(Watched::tool_change);

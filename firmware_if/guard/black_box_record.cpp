@@ -241,6 +241,7 @@ void write(Writer& out, const LiveResult& live_result) noexcept {
     out.integer(live_result.result.pair, 4);
     out.integer(live_result.result.not_proven, 4);
     out.integer(live_result.result.known_answer_signature, 2);
+    out.integer(live_result.result.samples, 1);
     out.integer(live_result.sync_counter, 1);
     out.time(live_result.latched_us);
     out.time(live_result.arrived_us);
@@ -261,6 +262,7 @@ void read(Reader& in, LiveResult& live_result) noexcept {
     live_result.result.pair = in.word();
     live_result.result.not_proven = in.word();
     live_result.result.known_answer_signature = static_cast<std::uint16_t>(in.integer(2));
+    live_result.result.samples = in.byte();
     live_result.sync_counter = in.byte();
     live_result.latched_us = in.time();
     live_result.arrived_us = in.time();

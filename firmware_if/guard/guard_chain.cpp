@@ -70,6 +70,9 @@ CycleResult GuardChain::decide(bool ready, bool is_armed) noexcept {
     CycleResult result = stop_certificate_ == nullptr
                              ? judge(pair_queries_, results(), containment_results(), ready)
                              : judge(stop_certificate_->cycle(), ready, is_armed);
+    if (stop_certificate_ == nullptr) {
+        result.samples = machine_.can.permit_samples.least;
+    }
     if (speed_advisory_ != nullptr) {
         result.advisories.speed_cap = speed_advisory_->cap();
     }

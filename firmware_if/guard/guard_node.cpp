@@ -57,8 +57,7 @@ const char* to_text(WithheldPermit::Why why) noexcept {
 
 GuardLimits live_limits(const TimeLimits& times) noexcept {
     GuardLimits limits;
-    limits.silent_periods = times.permit_periods;  // then the last permit has run out
-    limits.snapshot_age_us = times.permit_us;
+    limits.period_us = times.period_us;
     return limits;
 }
 

@@ -17,7 +17,7 @@ void GuardNode::send_permit(const LiveResult& live_result, std::int64_t now_us) 
     const Permit permit = permit_of(live_result.result, ++live_counter_, echo);
     if (has_session(can)) {
         const SampleSession session = receiver_.session_of(echo).value_or(SampleSession{});
-        Permit2 answered = permit2_of(live_result.result, live_counter_, echo, can.permit_samples);
+        Permit2 answered = permit2_of(live_result.result, live_counter_, echo);
         answered.nonce = session.nonce;
         answered.lap = session.lap;
         outbox_.put_permit(encode_permit2(can, answered, now_us));

@@ -26,8 +26,8 @@ std::uint16_t answer_of(const std::uint8_t* data, const Permit2& permit) noexcep
 
 }  // namespace
 
-Permit2 permit2_of(const CycleResult& result, std::uint8_t live_counter, std::uint8_t sync_counter,
-                   std::uint8_t samples) noexcept {
+Permit2 permit2_of(const CycleResult& result, std::uint8_t live_counter,
+                   std::uint8_t sync_counter) noexcept {
     constexpr std::uint8_t kAllAxes = 0xFF;
     constexpr auto kClear = static_cast<unsigned>(ClearanceLevel::clear);
     const Permit same = permit_of(result, live_counter, sync_counter);
@@ -42,7 +42,7 @@ Permit2 permit2_of(const CycleResult& result, std::uint8_t live_counter, std::ui
     // 0 would be hold: a board that obeys it waits where it stands, and for ever.
     permit.cap = std::max<std::uint8_t>(same.speed_cap, 1);
     permit.mask = permit.cap < kPermitCapNone ? kAllAxes : std::uint8_t{0};
-    permit.samples = samples;
+    permit.samples = result.samples;
     permit.level = static_cast<std::uint8_t>(
         kClear - static_cast<unsigned>(result.advisories.clearance_level));
     return permit;

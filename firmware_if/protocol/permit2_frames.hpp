@@ -40,9 +40,9 @@ struct Permit2 {
 };
 
 /// What a judged cycle says, without session, for a board that promises no cap: what the proof
-/// would like is advice for all axes, and never to hold. `samples`: n of its certificate.
+/// would like is advice for all axes, and never to hold.
 [[nodiscard]] Permit2 permit2_of(const CycleResult& result, std::uint8_t live_counter,
-                                 std::uint8_t sync_counter, std::uint8_t samples) noexcept;
+                                 std::uint8_t sync_counter) noexcept;
 
 /// The plain frame on layout.permit_id and its bit-inverted twin on the next id. Precondition:
 /// samples <= 15, level <= 3, cap <= 250. With jog and stop, cap and mask are sent as none.

@@ -101,8 +101,9 @@ CycleDemand cycle_demand(const Machine& machine, bool is_stoppable) noexcept {
     const std::uint32_t tasks = stop_tasks(machine);
     const CyclePlan plan = cycle_plan(machine, tasks);
     const bool has_jogs = machine.guard.jog.is_promised;
-    // The first stage asks of a pair once; a ladder is asked of so many pairs at the most.
-    std::uint32_t queries = has_jogs ? std::max(tasks, kJogLaddersMax * (kJogRungs - 1)) : tasks;
+    // A ladder is asked of so many pairs at the most.
+    std::uint32_t queries = tries_longer(machine.can.permit_samples) ? 2 * tasks : tasks;
+    queries = has_jogs ? std::max(queries, kJogLaddersMax * (kJogRungs - 1)) : queries;
     for (std::uint32_t stage = 1; stage < plan.stages; ++stage) {
         queries = std::max(queries, plan.queries[stage]);
     }

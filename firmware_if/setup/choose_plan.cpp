@@ -31,11 +31,12 @@ constexpr std::array<PlanStep, kPlanSteps> kSteps{{{16, 10, 12, 24},
 constexpr double kChosenShare = 0.95;
 
 /// Whatever its length is measured at: layouts that were longest on every machine so far.
-CycleMeasureOptions quick_options(const CyclePlan& plan, std::uint32_t tasks) {
+CycleMeasureOptions quick_options(const CyclePlan& plan, const Machine& machine) {
     CycleMeasureOptions options;
     options.conditions = {CacheCondition::code_cold};
     for (const CycleLayout layout : {CycleLayout::rows, CycleLayout::even}) {
-        for (CycleShape shape : cycle_shapes(plan, tasks)) {
+        for (CycleShape shape :
+             cycle_shapes(plan, stop_tasks(machine), tries_longer(machine.can.permit_samples))) {
             shape.layout = layout;
             options.shapes.push_back(shape);
         }
@@ -45,7 +46,7 @@ CycleMeasureOptions quick_options(const CyclePlan& plan, std::uint32_t tasks) {
 
 std::optional<CycleMeasurement> measure(const LoadedMachine& loaded, const CyclePlan& plan,
                                         std::string& fault) {
-    return measure_cycle(loaded, plan, quick_options(plan, stop_tasks(loaded.machine)), fault);
+    return measure_cycle(loaded, plan, quick_options(plan, loaded.machine), fault);
 }
 
 ChosenPlan judged(const CycleMeasurement& measured, double room_us) {

@@ -171,10 +171,10 @@ class Repeats {
     ColdCaches& caches_;
 };
 
-std::vector<CycleShape> all_shapes(const CyclePlan& plan, std::uint32_t tasks) {
+std::vector<CycleShape> all_shapes(const CyclePlan& plan, std::uint32_t tasks, bool asks_twice) {
     std::vector<CycleShape> shapes;
     for (const CycleLayout layout : kCycleLayouts) {
-        for (CycleShape shape : cycle_shapes(plan, tasks)) {
+        for (CycleShape shape : cycle_shapes(plan, tasks, asks_twice)) {
             shape.layout = layout;
             shapes.push_back(shape);
         }
@@ -249,7 +249,9 @@ std::optional<CycleMeasurement> measure_cycle(const LoadedMachine& loaded, const
     }
     ColdCaches caches;
     for (const CycleShape& shape :
-         options.shapes.empty() ? all_shapes(plan, out.tasks) : options.shapes) {
+         options.shapes.empty()
+             ? all_shapes(plan, out.tasks, tries_longer(measured.machine.can.permit_samples))
+             : options.shapes) {
         fault = measure_shape(shape, measured.machine, options, chain, caches, out);
         if (!fault.empty()) {
             return std::nullopt;

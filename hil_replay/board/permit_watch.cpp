@@ -50,6 +50,11 @@ CanFrame board_frame(const axg_board_can_frame& made, std::int64_t now_us) noexc
     return out;
 }
 
+/// Of a permit's twin, which is inverted.
+std::uint8_t n_of(const CanFrame& twin) noexcept {
+    return static_cast<std::uint8_t>((twin.data[7] ^ 0xFFU) >> 4U);
+}
+
 }  // namespace
 
 PermitWatch::PermitWatch(const CanLayout& layout, bool is_jogging, std::int64_t permit_us,
@@ -59,7 +64,7 @@ PermitWatch::PermitWatch(const CanLayout& layout, bool is_jogging, std::int64_t 
       checker_(layout, times_of(layout)),
       has_true_timer_(permit_us == 0),
       holds_us_(permit_us != 0 ? permit_us
-                               : std::int64_t{layout.permit_samples} * layout.sample_us),
+                               : std::int64_t{layout.permit_samples.least} * layout.sample_us),
       is_jogging_(is_jogging) {
     latched_us_.fill(INT64_MIN);
     power_up();
@@ -72,7 +77,7 @@ PermitWatch::PermitWatch(const CanLayout& layout, bool is_jogging, std::int64_t 
 void PermitWatch::power_up() noexcept {
     axg_board_options options{};
     options.period_us = layout_.sample_us;
-    options.permit_samples_max = layout_.permit_samples;
+    options.permit_samples_max = layout_.permit_samples.most;
     options.axis_count = 1;
     options.cap_kind = AXG_BOARD_CAP_IGNORED;
     options.permit_id = layout_.permit_id;
@@ -185,7 +190,7 @@ void PermitWatch::hear(const CanFrame& frame) noexcept {
     const std::uint64_t now_us = library_us(frame.time_us);
     switch (axg_board_frame(&board_, &heard, now_us)) {
         case AXG_BOARD_HEARD_PERMIT:
-            note_permit(now_us);
+            note_permit(now_us, n_of(frame));
             break;
         case AXG_BOARD_HEARD_STOP:
             note_stop(frame.time_us);
@@ -212,18 +217,19 @@ void PermitWatch::note_stop(std::int64_t now_us) noexcept {
     last_stop_us_ = now_us;
 }
 
-void PermitWatch::note_permit(std::uint64_t now_us) noexcept {
+void PermitWatch::note_permit(std::uint64_t now_us, std::uint8_t samples) noexcept {
     const axg_board_motion motion = axg_board_may_move(&board_, now_us);
     const axg_board_permit& last = board_.last;
     ++permits_;
     speed_cap_ = *std::min_element(std::begin(last.caps.of), std::end(last.caps.of));
     is_slow_ = last.word == AXG_BOARD_WORD_SLOW;
-    if (!motion.may_move) {  // the first two after arming
+    // The first two after arming, or one that ends before an older one.
+    if (!motion.may_move || motion.end_us != last.end_us) {
         return;
     }
-    const std::int64_t periods_us = std::int64_t{layout_.permit_samples} * layout_.sample_us;
-    certified_us_ = board_us(motion.end_us) - periods_us;  // every permit has the same n
-    valid_until_us_ = certified_us_ + holds_us_;
+    valid_until_us_ = board_us(motion.end_us);
+    certified_us_ = valid_until_us_ - std::int64_t{samples} * layout_.sample_us;
+    valid_until_us_ = has_true_timer_ ? valid_until_us_ : certified_us_ + holds_us_;
 }
 
 void PermitWatch::on_permit(const Permit& permit, std::int64_t now_us) noexcept {

@@ -50,7 +50,7 @@ class PermitWatch {
 
     /// The first instant without a permit; INT64_MIN: there never was one.
     [[nodiscard]] std::int64_t valid_until_us() const noexcept { return valid_until_us_; }
-    /// t_k of its sample.
+    /// t_k of that permit's sample.
     [[nodiscard]] std::int64_t certified_us() const noexcept { return certified_us_; }
     /// When the guard asked for a stop; kNever: it has not.
     [[nodiscard]] std::int64_t stopped_us() const noexcept { return stopped_us_; }
@@ -69,7 +69,7 @@ class PermitWatch {
     void arm(std::int64_t now_us) noexcept;
     void hear(const CanFrame& frame) noexcept;
     void note_stop(std::int64_t now_us) noexcept;
-    void note_permit(std::uint64_t now_us) noexcept;
+    void note_permit(std::uint64_t now_us, std::uint8_t samples) noexcept;
 
     CanLayout layout_;
     ConfigurationHashes hashes_;

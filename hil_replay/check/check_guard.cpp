@@ -18,7 +18,8 @@ namespace axg {
 namespace {
 
 /// How far from the reported position an axis can get that has stood still for all samples kept.
-double reach_at_rest(const Machine& machine, std::uint32_t axis, const SampleErrors& errors) {
+double reach_at_rest(const Machine& machine, std::uint32_t axis, const SampleErrors& errors,
+                     std::uint32_t samples) {
     MotionHistory history;
     AxisSnapshot snapshot;
     for (std::uint32_t i = 0; i < kSamplesKept; ++i) {
@@ -27,40 +28,63 @@ double reach_at_rest(const Machine& machine, std::uint32_t axis, const SampleErr
     }
     const Axis& promised = machine.axes[axis];
     const AxisRange now = range_of(history, axis, promised, errors);
-    return stop_reach(stop_limits(machine, axis), now, free_seconds(machine)).high;
+    return stop_reach(stop_limits(machine, axis), now, free_seconds(machine, samples)).high;
 }
 
 /// The farthest that an axis at full speed can get; it has been at that speed for long.
-double reach_at_speed(const Machine& machine, std::uint32_t axis) {
+double reach_at_speed(const Machine& machine, std::uint32_t axis, std::uint32_t samples) {
     const Axis& promised = machine.axes[axis];
     const double full = promised.speed_max;
-    return forward_reach(stop_limits(machine, axis), full, full, free_seconds(machine));
+    return forward_reach(stop_limits(machine, axis), full, full, free_seconds(machine, samples));
 }
 
-/// The longest stretch of a look-ahead path that has to be sent: every axis at its full speed.
-double stretch_s(const Machine& machine) {
+/// The longest stretch of a look-ahead path that has to be sent for such a permit: every axis at
+/// its full speed.
+double stretch_s(const Machine& machine, std::uint32_t samples) {
     double deceleration = 0, jerk = 0;
     for (const Axis& axis : machine.axes) {
         deceleration = std::max(deceleration, axis.speed_max / axis.stopping_min);
         jerk = std::max(jerk, axis.speed_max / axis.jerk_max);
     }
-    return free_seconds(machine) + path_braking_s(deceleration, jerk);
+    return free_seconds(machine, samples) + path_braking_s(deceleration, jerk);
+}
+
+std::string format_samples(PermitSamples samples) {
+    return samples.least == samples.most ? fmt::format("{}", samples.least)
+                                         : fmt::format("{} to {}", samples.least, samples.most);
+}
+
+/// With the shortest permit, and the longest where that is another.
+std::string horizons(const Machine& machine) {
+    const PermitSamples samples = machine.can.permit_samples;
+    const double least_ms = free_seconds(machine, samples.least) * 1e3;
+    return samples.least == samples.most ? fmt::format("{:.4g} ms", least_ms)
+                                         : fmt::format("{:.4g} to {:.4g} ms", least_ms,
+                                                       free_seconds(machine, samples.most) * 1e3);
 }
 
 void report_path(CheckReport& report) {
     const Machine& machine = report.loaded.machine;
     const double look_ahead_s = machine.can.look_ahead_samples * machine.can.sample_us * 1e-6;
-    const double needed_s = stretch_s(machine);
+    const PermitSamples samples = machine.can.permit_samples;
+    const double needed_s = stretch_s(machine, samples.least);
+    const double longest_s = stretch_s(machine, samples.most);
     report.facts.look_ahead_s = look_ahead_s;
     report.facts.look_ahead_needed_s = needed_s;
+    report.facts.look_ahead_longest_s = longest_s;
     fmt::print(
         report.words,
-        "\nstoppable mode: a stop begins at most {:.4g} ms after a sample ({} samples of permit, "
+        "\nstoppable mode: a stop begins at most {} after a sample ({} samples of permit, "
         "{:.4g} ms board reaction) and keeps to the path; look-ahead {:.4g} ms, needed for a stop "
         "from full speed {:.4g} ms{}\n",
-        free_seconds(machine) * 1e3, machine.can.permit_samples,
-        machine.guard.board_reaction_s * 1e3, look_ahead_s * 1e3, needed_s * 1e3,
-        look_ahead_s < needed_s ? ". Such a stop is not proven: increase can.ahead.samples" : "");
+        horizons(machine), format_samples(samples), machine.guard.board_reaction_s * 1e3,
+        look_ahead_s * 1e3, needed_s * 1e3,
+        look_ahead_s < needed_s ? ". Such a stop is not proven: increase can.ahead.samples"
+        : look_ahead_s < longest_s
+            ? fmt::format(", with permits of {} samples {:.4g} ms. These are not proven at full "
+                          "speed: increase can.ahead.samples",
+                          samples.most, longest_s * 1e3)
+            : "");
 }
 
 /// How far a jog gets beyond its last sample.
@@ -70,7 +94,8 @@ void report_jog(CheckReport& report) {
     for (const Axis& axis : machine.axes) {
         const bool rotary = axis.kind == AxisKind::rotary;
         const char* name = rotary ? "deg" : "mm";
-        const double reach = jog_reach(jog_limits(machine.guard.jog, axis), free_seconds(machine)) *
+        const double reach = jog_reach(jog_limits(machine.guard.jog, axis),
+                                       free_seconds(machine, machine.can.permit_samples.least)) *
                              (rotary ? 180.0 / kPi : 1.0);
         report.facts.jog_reaches.push_back(reach);
         text += fmt::format("{} {} {:.3g} {}", text.empty() ? "" : ",", axis.name, reach, name);
@@ -103,9 +128,9 @@ void report_guard(CheckReport& report) {
         return;
     }
     fmt::print(report.words,
-               "\nstoppable mode: free motion for {:.4g} ms after a sample ({} samples of permit, "
+               "\nstoppable mode: free motion for {} after a sample ({} samples of permit, "
                "{:.4g} ms board reaction), then each axis brakes independently\n",
-               free_seconds(machine) * 1e3, machine.can.permit_samples,
+               horizons(machine), format_samples(machine.can.permit_samples),
                machine.guard.board_reaction_s * 1e3);
     for (std::uint32_t i = 0; i < machine.axes.size(); ++i) {
         const Axis& axis = machine.axes[i];
@@ -113,12 +138,22 @@ void report_guard(CheckReport& report) {
         const double unit = rotary ? 180.0 / kPi : 1.0;
         const char* name = rotary ? "deg" : "mm";
         const double count = i < set.axis_count ? set.axes[i].unit : 0;
-        const double rest = reach_at_rest(machine, i, sample_errors(machine, i, count)) * unit;
-        const double speed = reach_at_speed(machine, i) * unit;
-        report.facts.reaches.push_back({speed, rest});
+        const PermitSamples samples = machine.can.permit_samples;
+        const auto reach_of = [&](std::uint32_t n) {
+            return AxisReach{
+                .at_full_speed = reach_at_speed(machine, i, n) * unit,
+                .at_rest = reach_at_rest(machine, i, sample_errors(machine, i, count), n) * unit};
+        };
+        const AxisReach least = reach_of(samples.least), most = reach_of(samples.most);
+        report.facts.reaches.push_back(least);
         fmt::print(report.words,
-                   "  {:<4} stopping envelope: {:.4g} {} at full speed, {:.3g} {} at rest\n",
-                   axis.name, speed, name, rest, name);
+                   "  {:<4} stopping envelope: {:.4g} {} at full speed, {:.3g} {} at rest",
+                   axis.name, least.at_full_speed, name, least.at_rest, name);
+        if (tries_longer(samples)) {
+            fmt::print(report.words, "; with {} samples {:.4g} and {:.3g} {}", samples.most,
+                       most.at_full_speed, most.at_rest, name);
+        }
+        fmt::print(report.words, "\n");
     }
     if (machine.guard.jog.is_promised) {
         report_jog(report);

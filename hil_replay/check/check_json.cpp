@@ -151,7 +151,10 @@ Json describe_exclusions(const Machine& machine) {
 }
 
 Json describe_guard(const Machine& machine, const CheckFacts& facts) {
-    Json out{{"horizon_ms", free_seconds(machine) * 1e3},
+    const PermitSamples samples = machine.can.permit_samples;
+    Json out{{"horizon_ms", free_seconds(machine, samples.least) * 1e3},
+             {"horizon_longest_ms", free_seconds(machine, samples.most) * 1e3},
+             {"permit_samples", {samples.least, samples.most}},
              {"promise", to_text(machine.guard.promise)},
              {"obeyed_by", to_text(machine.guard.obeyed_by)},
              {"free_jerk", machine.guard.free_jerk_limited ? "limited" : "any"},
@@ -165,6 +168,7 @@ Json describe_guard(const Machine& machine, const CheckFacts& facts) {
     if (machine.guard.promise == StopPromise::path_keeping) {
         out["ahead_ms"] = facts.look_ahead_s * 1e3;
         out["ahead_needed_ms"] = facts.look_ahead_needed_s * 1e3;
+        out["ahead_longest_ms"] = facts.look_ahead_longest_s * 1e3;
     }
     for (std::size_t i = 0; i < facts.reaches.size(); ++i) {
         out["axes"].push_back({{"name", machine.axes[i].name},

@@ -41,9 +41,10 @@ struct EngineFacts {
 struct CheckFacts {
     std::vector<MeshReport> bodies, tools;  // as LoadedMachine::meshes; no mesh: nothing in it
     std::vector<MeshReport> sections;       // those of all tools that have a name, in their order
-    double look_ahead_s = 0, look_ahead_needed_s = 0;  // where stops keep to the path
-    std::vector<AxisReach> reaches;                    // where they do not
-    std::vector<double> jog_reaches;                   // where a jog is promised; mm or degrees
+    // Where stops keep to the path: for the shortest permit, and for the longest.
+    double look_ahead_s = 0, look_ahead_needed_s = 0, look_ahead_longest_s = 0;
+    std::vector<AxisReach> reaches;   // where they do not
+    std::vector<double> jog_reaches;  // where a jog is promised; mm or degrees
     std::optional<EngineFacts> engine;
     std::vector<PairContacts> contacts;
     std::string plan;  // as JSON; empty: none was wanted

@@ -132,7 +132,7 @@ void print_proofs(const ReplayReport& report, std::FILE* words) {
     const ProofStatistics& proofs = report.run.proofs();
     if (obeyed_by_refusal(machine).empty()) {
         fmt::print(words, "\nproven to standstill, at most {:.3f} ms after each sample\n",
-                   free_seconds(machine) * 1e3);
+                   free_seconds(machine, machine.can.permit_samples.least) * 1e3);
     }
     fmt::print(words, "plan: {}\n", format_plan(report.run.plan()));
     print_not_proven(report, words);

@@ -78,11 +78,13 @@ Json proofs_json(const ReplayReport& report) {
     const auto counts = [](const CountTable& table, std::uint32_t most) {
         return Json{{"median", table.at_share(0.5)}, {"p99", table.at_share(0.99)}, {"max", most}};
     };
-    return {{"horizon_ms", free_seconds(report.loaded.machine) * 1e3},
-            {"questions", counts(proofs.queries, proofs.queries_most)},
-            {"stages", counts(proofs.stages, proofs.stages_most)},
-            {"plan", plan_json(report.run.plan())},
-            {"withheld", proofs.withheld}};
+    return {
+        {"horizon_ms",
+         free_seconds(report.loaded.machine, report.loaded.machine.can.permit_samples.least) * 1e3},
+        {"questions", counts(proofs.queries, proofs.queries_most)},
+        {"stages", counts(proofs.stages, proofs.stages_most)},
+        {"plan", plan_json(report.run.plan())},
+        {"withheld", proofs.withheld}};
 }
 
 Json clearance_levels_json(const ReplayReport& report) {

@@ -54,19 +54,19 @@
 /* The guard: struct Guard without cause and period, of which no rule reads more than "this one". */
 byte phase = P_init;
 bit tested, heard, proven, confirmed;
-byte quiet, good, silent, bad;
+byte quiet, good, held, bad;
 
 /* The event: set before a choice is left, and nothing again after each step. */
 byte kind;
 bit event_proven;
-byte event_late, event_age;
+byte event_late, event_age, event_samples;
 
 /* Scratch of one step: what the table says, what is sent. Not part of a state. */
 hidden byte input, next, action, sends_permit, sends_stop;
 
 inline forget() {
     tested = 0; heard = 0; proven = 0; confirmed = 0;
-    quiet = 0; good = 0; silent = 0; bad = 0
+    quiet = 0; good = 0; held = 0; bad = 0
 }
 
 inline classify() {
@@ -74,7 +74,7 @@ inline classify() {
     :: kind == K_snapshot ->
         if
         :: event_proven && !proven && (event_late == 0 || BREAK == LATE_COUNTS) &&
-           (event_age < SNAPSHOT_AGE || BREAK == OLD_COUNTS) -> input = I_proven
+           (event_age + 1 <= event_samples || BREAK == OLD_COUNTS) -> input = I_proven
         :: else -> input = I_refused
         fi
     :: kind == K_deadline ->
@@ -82,8 +82,8 @@ inline classify() {
         :: (!proven || quiet == 0) && bad + BAD_WEIGHT >= BAD_LIMIT -> input = I_period_full
         :: else ->
             if
-            :: !proven && silent + 1 >= SILENT_PERIODS -> input = I_period_silent
-            :: !proven && silent + 1 < SILENT_PERIODS -> input = I_period_missed
+            :: !proven && held <= 1 -> input = I_period_silent
+            :: !proven && held > 1 -> input = I_period_missed
             :: proven && quiet == 0 -> input = I_period_disturbed
             :: proven && quiet > 0 ->
                 if
@@ -116,8 +116,11 @@ inline mark_period() {
     if
     :: kind == K_deadline ->
         proven = 0;
+        held = (held > 0 -> held - 1 : 0);
         quiet = (quiet < QUIET -> quiet + 1 : QUIET)
-    :: input == I_proven -> proven = 1
+    :: input == I_proven ->
+        proven = 1;
+        held = (held > event_samples + 1 -> held : event_samples + 1)
     :: kind == K_fault_reported || kind == K_fault_stop || kind == K_tx_fail -> quiet = 0
     :: else
     fi
@@ -129,14 +132,13 @@ inline act() {
     :: action == A_begin || action == A_mute -> forget()
     :: action == A_pass -> tested = 1
     :: action == A_hear -> heard = 1
-    :: action == A_wait -> good = 0; silent = 0
-    :: action == A_wait_deaf -> heard = 0; good = 0; silent = 0
+    :: action == A_wait -> good = 0
+    :: action == A_wait_deaf -> heard = 0; good = 0
     :: action == A_good ->
         good = (good + 1 < SNAPSHOTS_MIN -> good + 1 : SNAPSHOTS_MIN);
-        silent = 0;
         bad = (bad > 0 -> bad - 1 : 0)
-    :: action == A_disturbed -> silent = 0; bad = bad + BAD_WEIGHT
-    :: action == A_missed -> silent++; bad = bad + BAD_WEIGHT
+    :: action == A_disturbed -> bad = bad + BAD_WEIGHT
+    :: action == A_missed -> bad = bad + BAD_WEIGHT
     :: action == A_permit -> sends_permit = 1
     :: action == A_stop -> forget(); sends_stop = 1
     :: action == A_repeat -> sends_stop = !confirmed
@@ -194,7 +196,7 @@ inline guard_step() {
 
 inline print_state() {
     printf("%d %d %d %d %d %d %d %d %d ", phase, tested, heard, proven, confirmed, quiet, good,
-           silent, bad)
+           held, bad)
 }
 
 inline print_event() {
@@ -214,19 +216,20 @@ inline print_event() {
     :: kind == K_restart -> printf("restart")
     :: kind == K_kill -> printf("kill")
     fi;
-    printf(" %d %d %d : ", event_proven, event_late, event_age)
+    printf(" %d %d %d %d : ", event_proven, event_late, event_age, event_samples)
 }
 
 /* Any event in any state. Run with -DPRINTF: each state is left once by each event. */
 active proctype world() {
     do
     :: atomic {
-        event_proven = 0; event_late = 0; event_age = 0;
+        event_proven = 0; event_late = 0; event_age = 0; event_samples = 0;
         if
         :: kind = K_snapshot;
             if :: event_proven = 0 :: event_proven = 1 fi;
             if :: event_late = 0 :: event_late = 1 :: event_late = 2 fi;
-            if :: event_age = 0 :: event_age = 1 :: event_age = 2 :: event_age = 3 fi
+            if :: event_age = 0 :: event_age = 1 :: event_age = 2 :: event_age = 3 fi;
+            if :: event_samples = SAMPLES_LEAST :: event_samples = SAMPLES_MOST fi
         :: kind = K_deadline
         :: kind = K_fault_reported
         :: kind = K_fault_stop
@@ -245,7 +248,7 @@ active proctype world() {
             printf("STEP "); print_state(); print_event();
             guard_step();
             print_state(); printf("%d %d\n", sends_permit, sends_stop);
-            kind = K_nothing; event_proven = 0; event_late = 0; event_age = 0
+            kind = K_nothing; event_proven = 0; event_late = 0; event_age = 0; event_samples = 0
         }
     }
     od

@@ -47,8 +47,8 @@
 #define A_mute 14
 
 #define SNAPSHOTS_MIN 2
-#define SILENT_PERIODS 3
-#define SNAPSHOT_AGE 3
+#define SAMPLES_LEAST 2
+#define SAMPLES_MOST 3
 #define BAD_WEIGHT 2
 #define BAD_LIMIT 4
 

@@ -18,8 +18,8 @@ namespace axg::test {
 namespace {
 
 // Small, so that the states are few; each still greater than one.
-constexpr GuardLimits kLimits{
-    .snapshots_min = 2, .silent_periods = 3, .snapshot_age_us = 3, .bad_weight = 2, .bad_limit = 4};
+constexpr GuardLimits kLimits{.snapshots_min = 2, .period_us = 1, .bad_weight = 2, .bad_limit = 4};
+constexpr std::uint8_t kSamplesLeast = 2, kSamplesMost = 3;  // of a permit
 
 constexpr std::array<const char*, kGuardPhases> kPhases{"stopped", "init", "selftest", "ready",
                                                         "armed"};
@@ -75,10 +75,9 @@ void print_promela() {
     print_names("I", kInputs);
     print_names("A", kActions);
     std::printf(
-        "#define SNAPSHOTS_MIN %u\n#define SILENT_PERIODS %u\n#define SNAPSHOT_AGE %d\n"
+        "#define SNAPSHOTS_MIN %u\n#define SAMPLES_LEAST %d\n#define SAMPLES_MOST %d\n"
         "#define BAD_WEIGHT %u\n#define BAD_LIMIT %u\n\n",
-        kLimits.snapshots_min, kLimits.silent_periods, static_cast<int>(kLimits.snapshot_age_us),
-        kLimits.bad_weight, kLimits.bad_limit);
+        kLimits.snapshots_min, kSamplesLeast, kSamplesMost, kLimits.bad_weight, kLimits.bad_limit);
     std::printf("/* Sets next and action. */\ninline look_up(input, phase) {\n    if\n");
     for (const GuardRow& row : kGuardRows) {
         std::printf(
@@ -122,10 +121,14 @@ std::vector<Named> all_events() {
     for (const bool is_proven : {false, true}) {
         for (std::uint32_t late = 0; late < 3; ++late) {
             for (std::int64_t age = 0; age <= 3; ++age) {
-                events.push_back(
-                    {"snapshot",
-                     {.kind = GuardEventKind::snapshot, .is_proven = is_proven, .age_us = age},
-                     late});
+                for (const std::uint8_t samples : {kSamplesLeast, kSamplesMost}) {
+                    events.push_back({"snapshot",
+                                      {.kind = GuardEventKind::snapshot,
+                                       .is_proven = is_proven,
+                                       .age_us = age,
+                                       .samples = samples},
+                                      late});
+                }
             }
         }
     }
@@ -159,7 +162,7 @@ Key key_of(const Guard& g) {
             g.is_confirmed,
             g.quiet,
             g.good,
-            g.silent,
+            g.held,
             g.bad};
 }
 
@@ -181,9 +184,9 @@ void print_relation() {
             const GuardOutput out = on_event(guard, event, kLimits);
             std::printf("STEP ");
             print_key(key_of(all[i]));
-            std::printf(
-                "%s %d %u %d : ", named.name, event.is_proven, named.late,
-                event.kind == GuardEventKind::snapshot ? static_cast<int>(event.age_us) : 0);
+            std::printf("%s %d %u %d %d : ", named.name, event.is_proven, named.late,
+                        event.kind == GuardEventKind::snapshot ? static_cast<int>(event.age_us) : 0,
+                        event.samples);
             print_key(key_of(guard));
             std::printf("%d %d\n", out.sends_permit, out.sends_stop);
             if (known.insert(key_of(guard)).second) {

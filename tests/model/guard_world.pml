@@ -115,9 +115,10 @@ inline grow_older() {
     evaluated_late = (evaluates && evaluated_late < OLD -> evaluated_late + 1 : evaluated_late)
 }
 
-inline end_evaluation(is_proven) {
+inline end_evaluation(is_proven, samples) {
     kind = K_snapshot;
     event_proven = is_proven; event_late = evaluated_late; event_age = snapshot_age;
+    event_samples = samples;
     forget_snapshot()
 }
 
@@ -133,8 +134,9 @@ inline happen() {
             if :: frame_age = 0 :: frame_age = 1 :: frame_age = 2 :: frame_age = 3 fi
         fi
     :: snapshot_age != NONE && !evaluates -> evaluates = 1
-    :: evaluates -> end_evaluation(1)
-    :: evaluates -> end_evaluation(0)
+    :: evaluates -> end_evaluation(1, SAMPLES_LEAST)
+    :: evaluates -> end_evaluation(1, SAMPLES_MOST)
+    :: evaluates -> end_evaluation(0, SAMPLES_LEAST)
     :: listens && last_age == OLD -> give_up()  /* stale: seen sooner or later */
     :: kind = K_deadline
     :: kind = K_fault_reported
@@ -172,8 +174,8 @@ inline follow_script() {
         kind = K_frame
     :: step == 7 && snapshot_age != NONE ->
         if
-        :: mode == FLAP_PROOF && periods % 2 == 1 -> end_evaluation(0)
-        :: else -> end_evaluation(1)
+        :: mode == FLAP_PROOF && periods % 2 == 1 -> end_evaluation(0, SAMPLES_MOST)
+        :: else -> end_evaluation(1, SAMPLES_MOST)
         fi
     :: step == 8 -> kind = K_deadline; periods++
     :: else
@@ -184,7 +186,7 @@ inline follow_script() {
 inline observe() {
     if
     :: kind == K_snapshot ->
-        w_proof = w_proof || (event_proven && event_late == 0 && event_age < SNAPSHOT_AGE)
+        w_proof = w_proof || (event_proven && event_late == 0 && event_age + 1 <= event_samples)
     :: kind == K_deadline ->
         if
         :: phase == P_selftest && w_proof && !w_noise ->
@@ -281,7 +283,7 @@ end_world:
                 follow_up()
             :: else
             fi;
-            kind = K_nothing; event_proven = 0; event_late = 0; event_age = 0;
+            kind = K_nothing; event_proven = 0; event_late = 0; event_age = 0; event_samples = 0;
             frame_age = 0; frame_again = 0; frame_foreign = 0
         }
     }

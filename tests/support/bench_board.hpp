@@ -41,7 +41,7 @@ class BenchBoard {
         board.jitter_us = 20;
         board.reaction_us = 2000;
         board.permit_samples_max =
-            is(Broken::takes_samples_above) ? std::uint8_t{15} : machine.can.permit_samples;
+            is(Broken::takes_samples_above) ? std::uint8_t{15} : machine.can.permit_samples.most;
         board.axis_count = static_cast<std::uint8_t>(machine.axes.size());
         for (std::size_t i = 0; i < machine.axes.size(); ++i) {
             board.endless_axes |=
@@ -367,7 +367,7 @@ class BenchBoard {
         switch (options_.broken) {
             case Broken::takes_short_frames:
                 is_bent = plain.length_bytes == 7;
-                permit.samples = is_bent ? machine_.can.permit_samples : permit.samples;
+                permit.samples = is_bent ? machine_.can.permit_samples.most : permit.samples;
                 permit.level = is_bent ? std::uint8_t{0} : permit.level;
                 plain.length_bytes = inverted.length_bytes = 8;
                 break;
@@ -385,7 +385,7 @@ class BenchBoard {
                 break;
             case Broken::takes_samples_0:
                 is_bent = permit.samples == 0 && permit.word != PermitWord::stop;
-                permit.samples = is_bent ? machine_.can.permit_samples : permit.samples;
+                permit.samples = is_bent ? machine_.can.permit_samples.most : permit.samples;
                 break;
             case Broken::refuses_slow:
                 is_bent = permit.word == PermitWord::slow;

@@ -231,6 +231,9 @@ class LiveWorld {
             if (query.kind == LiveQuery::Kind::snapshot) {
                 is_armed = query.is_armed;
                 made.result = verdict(event.snapshot.sample);
+                if (made.result.samples == 0) {  // a script that says no n means the usual one
+                    made.result.samples = machine.can.permit_samples.least;
+                }
                 made.result.has_permit &= event.state == ReceiverState::valid;
             }
             made.sync_counter = event.sync_counter;

@@ -29,7 +29,8 @@ inline void give_look_ahead(std::mt19937_64& random, const FollowingErrors& most
         const double error = axis.kind == AxisKind::rotary ? most.rotary_rad : most.linear_mm;
         axis.following_error = random() % 2 == 0 ? between(random, 0, error) : 0;
     }
-    const double stop_s = free_seconds(machine) + path_braking_s(p, z);
+    const double stop_s =
+        free_seconds(machine, machine.can.permit_samples.most) + path_braking_s(p, z);
     const double period_s = machine.can.sample_us * 1e-6;
     machine.can.format = CanFormat::fd;
     machine.can.look_ahead_samples =

@@ -68,7 +68,7 @@ class PermitGuard {
                            .sync_counter = event.sync_counter,
                            .live_counter = ++live_counter_,
                            .known_answer_signature = kKnownAnswerSignature,
-                           .samples = layout_.permit_samples,
+                           .samples = layout_.permit_samples.most,
                            .nonce = session->nonce,
                            .lap = session->lap};
         for (const CanFrame& frame : encode_permit2(layout_, made, event.time_us + response_us_)) {

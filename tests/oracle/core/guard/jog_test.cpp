@@ -31,8 +31,9 @@ enum class Board { each_axis, each_axis_with_look_ahead, along_path };
 void draw_rules(Random& random, Machine& machine, Board board) {
     machine.guard.board_reaction_s = between(random, 0.2e-3, 3e-3);
     machine.guard.free_jerk_limited = random() % 2 == 0;
-    machine.can.permit_samples = static_cast<std::uint8_t>(3 + random() % 3);
-    machine.can.stale_after_us = 1000U * machine.can.permit_samples;
+    const auto samples = static_cast<std::uint8_t>(3 + random() % 3);
+    machine.can.permit_samples = {samples, samples};
+    machine.can.stale_after_us = 1000U * machine.can.permit_samples.most;
     JogRules& jog = machine.guard.jog;
     jog.is_promised = true;
     jog.speed_mm_s = between(random, 2, 20);

@@ -46,8 +46,9 @@ void draw_limits(Random& random, Machine& machine) {
     }
     machine.guard.board_reaction_s = between(random, 0.2e-3, 3e-3);
     machine.guard.free_jerk_limited = random() % 2 == 0;
-    machine.can.permit_samples = static_cast<std::uint8_t>(3 + random() % 3);
-    machine.can.stale_after_us = 1000U * machine.can.permit_samples;
+    const auto samples = static_cast<std::uint8_t>(3 + random() % 3);
+    machine.can.permit_samples = {samples, samples};
+    machine.can.stale_after_us = 1000U * machine.can.permit_samples.most;
 }
 
 enum class Guard { whole, contact_only, no_jerk, no_dead_man };
@@ -272,7 +273,7 @@ void fail_once(Random& random, ContactScene& scene, Fault fault, Board board,
     const CanLayout& can = scene.machine().can;
     const BoardStopRecord& stop = result.board_stop;
     const std::int64_t late_us =
-        stop.brake_us - (stop.certified_us + std::int64_t{can.permit_samples} * can.sample_us +
+        stop.brake_us - (stop.certified_us + std::int64_t{can.permit_samples.most} * can.sample_us +
                          drawn.options.board.reaction_us_max);
     const bool is_meant = result.moving_since_us != INT64_MIN &&
                           result.moving_since_us < fault_us && result.ended_us > fault_us &&

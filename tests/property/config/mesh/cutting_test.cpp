@@ -233,7 +233,7 @@ class Judge {
             stop_->note(snapshot, i == 0);
         }
         stop_->prove(engine_->engine(), *containment_test_);
-        Certified out{.is_proven = {}, .box = stop_->reach()};
+        Certified out{.is_proven = {}, .box = stop_->reach(3)};
         EXPECT_EQ(stop_->cycle().status, SnapshotStatus::ok);
         for (const PairProof& proof : stop_->cycle().proofs) {
             out.is_proven[proof.pair] = proof.surfaces.proof == JointBoxProof::proven &&

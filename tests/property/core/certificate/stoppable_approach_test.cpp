@@ -175,7 +175,8 @@ class Approach {
         aim_ = from_above_ ? -between(random, 2, 25) : between(random, -15, 15);
         axes_[kC].v = spin_;
         loss_ = (random() & 1U) != 0 ? 0 : between(random, 0, 0.05);
-        late_s_ = free_seconds(machine_) * ((random() & 1U) != 0 ? 1 : between(random, 0.7, 1));
+        late_s_ = free_seconds(machine_, machine_.can.permit_samples.least) *
+                  ((random() & 1U) != 0 ? 1 : between(random, 0.7, 1));
     }
 
     void run(Tally& tally) {

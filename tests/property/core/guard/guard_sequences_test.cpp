@@ -21,10 +21,10 @@
 namespace axg::test {
 namespace {
 
-// Each greater than one; a snapshot's age is counted in steps of a third of its limit.
-constexpr GuardLimits kSmall{
-    .snapshots_min = 2, .silent_periods = 3, .snapshot_age_us = 3, .bad_weight = 3, .bad_limit = 8};
-constexpr GuardLimits kUsual{.snapshot_age_us = 3};
+// Each greater than one but the period, in which ages are counted.
+constexpr GuardLimits kSmall{.snapshots_min = 2, .period_us = 1, .bad_weight = 3, .bad_limit = 8};
+constexpr GuardLimits kUsual{.period_us = 1};
+constexpr std::uint8_t kSamples = 3;  // n of its permits
 
 struct Named {
     const char* name;
@@ -33,7 +33,10 @@ struct Named {
 };
 
 constexpr GuardEvent snapshot(bool is_proven, std::int64_t age_us) {
-    return {.kind = GuardEventKind::snapshot, .is_proven = is_proven, .age_us = age_us};
+    return {.kind = GuardEventKind::snapshot,
+            .is_proven = is_proven,
+            .age_us = age_us,
+            .samples = kSamples};
 }
 constexpr GuardEvent fault(GuardFault kind) {
     return {.kind = GuardEventKind::fault, .fault = kind};
@@ -92,7 +95,7 @@ struct State {
     [[nodiscard]] auto key() const {
         const Guard& g = guard;
         return std::tuple(g.phase, g.is_tested, g.is_heard, g.is_proven, g.is_confirmed, g.quiet,
-                          g.good, g.silent, g.bad, witness.key());
+                          g.good, g.held, g.bad, witness.key());
     }
 };
 
@@ -106,7 +109,8 @@ void observe(Witness& w, const Guard& guard, const Named& named, const GuardLimi
     const GuardEvent& event = named.event;
     using enum GuardEventKind;
     if (event.kind == snapshot) {
-        w.has_proof = w.has_proof || (event.is_proven && event.age_us < 3 && named.late == 0);
+        w.has_proof =
+            w.has_proof || (event.is_proven && event.age_us < kSamples && named.late == 0);
     } else if (event.kind == deadline) {
         // Counted in selftest; what ready has seen already it need not see again.
         if (guard.phase == GuardPhase::selftest) {

@@ -88,7 +88,7 @@ class MarginAdvisoryTest : public testing::Test {
 
     /// The least distance of cutter and table anywhere in the reachable box.
     [[nodiscard]] double reach_clearance_mm() const {
-        const JointBox box = certificate->reach();
+        const JointBox box = certificate->reach(3);
         return 60 + box.centre[2] - box.half[2];
     }
     [[nodiscard]] ClearanceLevel level() const { return advisory->clearance_levels()[0].level; }

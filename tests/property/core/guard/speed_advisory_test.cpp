@@ -256,7 +256,7 @@ double rest_of(const Machine& m, const Axis& axis, double speed, double accelera
         x += v * kStepS;
     }
     a = m.guard.free_jerk_limited ? a : a_max;
-    for (double t = 0; t < free_seconds(m); t += kStepS) {
+    for (double t = 0; t < free_seconds(m, 3); t += kStepS) {
         a = std::min(a_max, a + j * kStepS);
         v = std::min(axis.speed_max, v + a * kStepS);
         x += v * kStepS;

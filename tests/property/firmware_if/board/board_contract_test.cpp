@@ -76,8 +76,9 @@ Drawn draw_approach(Dice& dice, Story story, Without without) {
     out.machine.can.sample_us = is_short || dice.chance(0.5) ? 1000
                                 : dice.chance(0.5)           ? 2000
                                                              : 5000;
-    out.machine.can.permit_samples =
+    const auto samples =
         static_cast<std::uint8_t>(is_short || dice.chance(0.5) ? 3 : dice.in(4, 13));
+    out.machine.can.permit_samples = {samples, samples};
     out.start = kWall - dice.in(2, 150);
     out.speed_share = dice.chance(0.5) ? 1 : dice.in(0.1, 1);
     out.clock = dice.in(1 - kPeriodShare, 1 + kPeriodShare);
@@ -109,7 +110,9 @@ class WallGuard {
     bool certifies(const AxisSnapshot& snapshot) {
         note_snapshot(history_, snapshot, history_stride(errors_.period_s));
         const AxisRange now = range_of(history_, 0, machine_.axes[0], errors_);
-        const ReachRange reach = stop_reach(stop_limits(machine_, 0), now, free_seconds(machine_));
+        const ReachRange reach =
+            stop_reach(stop_limits(machine_, 0), now,
+                       free_seconds(machine_, machine_.can.permit_samples.most));
         return reach.high < kWall;
     }
     std::array<CanFrame, 2> permit(std::uint32_t number, std::uint32_t nonce) {
@@ -118,7 +121,7 @@ class WallGuard {
                                .sync_counter = static_cast<std::uint8_t>(number % kLap + 1),
                                .live_counter = ++live_,
                                .known_answer_signature = kKnownAnswerSignature,
-                               .samples = machine_.can.permit_samples,
+                               .samples = machine_.can.permit_samples.most,
                                .nonce = nonce,
                                .lap = static_cast<std::uint16_t>(number / kLap)},
                               0);

@@ -155,7 +155,7 @@ class Campaign {
         }
     }
     static std::int64_t permit_valid_us(const LiveWorld& world) {
-        return std::int64_t{world.machine.can.permit_samples} * world.machine.can.sample_us;
+        return std::int64_t{world.machine.can.permit_samples.most} * world.machine.can.sample_us;
     }
 
     std::mt19937_64 random_;
@@ -221,7 +221,7 @@ TEST(GuardNodeProperty, OneFrameLostInAThousandStopsNothingWithPermitsOfFourPeri
         LatchCell latch{kLatchClear, ~kLatchClear};
         LiveWorld world(format, latch);
         world.machine.can.permit_version = format == CanFormat::fd ? 2 : 1;
-        world.machine.can.permit_samples = 4;
+        world.machine.can.permit_samples = {4, 4};
         world.machine.can.stale_after_us = 4 * world.machine.can.sample_us;
         world.start();
         std::uint64_t lost = 0;

@@ -114,7 +114,8 @@ struct Case {
 Case random_case(Random& random) {
     Case c;
     c.machine = random_machine(random);
-    c.machine.can.permit_samples = static_cast<std::uint8_t>(3 + random() % 2);
+    const auto samples = static_cast<std::uint8_t>(3 + random() % 2);
+    c.machine.can.permit_samples = {samples, samples};
     c.approach = random_approach(random, c.machine);
     c.start = random_start(random, c.machine);
     c.board.seed = random();
@@ -197,7 +198,7 @@ TEST_P(BoardFault, BrakingBeginsWithinNPeriodsAndTheReaction) {
         const Outcome outcome = run(c, 3000);
         const std::int64_t bound_us =
             outcome.stop.certified_us +
-            std::int64_t{c.machine.can.permit_samples} * c.machine.can.sample_us +
+            std::int64_t{c.machine.can.permit_samples.most} * c.machine.can.sample_us +
             c.board.reaction_us_max;
         ASSERT_EQ(outcome.state, BoardState::stopped) << "case " << n;
         ASSERT_EQ(outcome.stop.why, BoardStop::permit_ran_out) << "case " << n;
@@ -245,7 +246,7 @@ TEST(MotionBoard, OneCycleLateIsBorneFromFourPeriodsOn) {
          --n) {
         Case c = random_case(random);
         c.bus.faults.late_from_us = c.fault_us;
-        const bool is_borne = c.machine.can.permit_samples > 3;
+        const bool is_borne = c.machine.can.permit_samples.most > 3;
         ASSERT_EQ(run(c, 3000).stop.why, is_borne ? BoardStop::none : BoardStop::permit_ran_out);
     }
 }
@@ -270,8 +271,8 @@ TEST(MotionBoard, LossesStopItInTimeOrNotAtAll) {
     for (std::uint64_t n = 0; n < count; ++n) {
         Case c = random_case(random);
         const bool is_little = n % 2 == 0;
-        c.machine.can.permit_samples = is_little ? 6 : 3;
-        c.machine.can.stale_after_us = 1000U * c.machine.can.permit_samples;
+        c.machine.can.permit_samples = is_little ? PermitSamples{6, 6} : PermitSamples{3, 3};
+        c.machine.can.stale_after_us = 1000U * c.machine.can.permit_samples.most;
         c.bus.faults.lost = is_little ? 0.001 : between(random, 0.01, 0.05);
         c.bus.faults.corrupted = is_little ? 0 : 0.01;
         const Outcome outcome = run(c, 400);
@@ -282,7 +283,7 @@ TEST(MotionBoard, LossesStopItInTimeOrNotAtAll) {
         stopped_at_little += is_little ? 1 : 0;
         ASSERT_LE(outcome.stop.brake_us,
                   outcome.stop.certified_us +
-                      std::int64_t{c.machine.can.permit_samples} * c.machine.can.sample_us +
+                      std::int64_t{c.machine.can.permit_samples.most} * c.machine.can.sample_us +
                       c.board.reaction_us_max);
     }
     std::printf("%llu of %llu stopped, %llu of those with n = 6 and one frame in a thousand lost\n",

@@ -193,9 +193,11 @@ TEST(MachineFaultsCan, TheHeartbeatsTimeFollowsThePeriodUnlessStated) {
         return with(kSmallMachine, "stale_after_us: 3000\n",
                     "stale_after_us: 90000\n  heartbeat_timeout_us: " + words + "\n");
     };
-    EXPECT_EQ(timeout_us(kSmallMachine), 30'000U);
+    EXPECT_EQ(timeout_us(kSmallMachine), 65'000U);
     const std::string slow = with(kSmallMachine, "sample_us: 1000", "sample_us: 20000");
-    EXPECT_EQ(timeout_us(with(slow, "  stale_after_us: 3000\n", "")), 60'000U);
+    EXPECT_EQ(timeout_us(with(slow, "  stale_after_us: 3000\n", "")), 65'000U);
+    const std::string slower = with(kSmallMachine, "sample_us: 1000", "sample_us: 30000");
+    EXPECT_EQ(timeout_us(with(slower, "  stale_after_us: 3000\n", "")), 90'000U);
     EXPECT_EQ(timeout_us(stated("1000")), 1000U);
     EXPECT_EQ(timeout_us(stated("10000000")), 10'000'000U);
     for (const std::string bad : {"999", "10000001"}) {
@@ -206,6 +208,39 @@ TEST(MachineFaultsCan, TheHeartbeatsTimeFollowsThePeriodUnlessStated) {
     EXPECT_EQ(faults_of(with(stated("19999"), "sample_us: 1000", "sample_us: 20000")),
               "m:34: can.heartbeat_timeout_us: invalid value (found 19999, expected at least "
               "sample_us, 20000). A board may send its heartbeat with its samples.\n");
+}
+
+TEST(MachineFaultsCan, ThePermitsSamplesAreOneNumberOrTwo) {
+    const auto stated = [](const std::string& keys) {
+        return with(kSmallMachine, "  stale_after_us: 3000\n", keys.empty() ? "" : "  " + keys);
+    };
+    const auto machine_of = [&](const std::string& keys) {
+        Machine machine;
+        EXPECT_TRUE(parse_machine(stated(keys), "m", machine).empty()) << keys;
+        return machine;
+    };
+    const auto can_of = [&](const std::string& keys) { return machine_of(keys).can; };
+    EXPECT_EQ(can_of("").permit_samples, (PermitSamples{3, 12}));
+    EXPECT_EQ(can_of("").stale_after_us, 12'000U) << "as long as the longest permit";
+    EXPECT_EQ(can_of("permit_samples: 5\n").permit_samples, (PermitSamples{5, 5}));
+    EXPECT_EQ(can_of("permit_samples: 2\n").stale_after_us, 3000U);
+    EXPECT_EQ(can_of("permit_samples: [2, 8]\n").permit_samples, (PermitSamples{2, 8}));
+    EXPECT_EQ(can_of("permit: 1\n  hashes: none\n").permit_samples, (PermitSamples{3, 3}));
+    const std::string wanted =
+        ", expected an integer from 2 to 12, or two of them: [least, most]).\n";
+    const std::string one = "m:33: can.permit_samples: invalid value (found ";
+    EXPECT_EQ(faults_of(stated("permit_samples: [3]\n")), one + "a list of 1" + wanted);
+    EXPECT_EQ(faults_of(stated("permit_samples: [3, 4, 5]\n")), one + "a list of 3" + wanted);
+    for (const std::string bad : {"1", "13", "[1, 5]", "[3, 13]", "[3, x]"}) {
+        EXPECT_EQ(faults_of(stated("permit_samples: " + bad + "\n")).substr(0, one.size()), one)
+            << bad;
+    }
+    EXPECT_EQ(faults_of(stated("permit_samples: [5, 4]\n")).substr(0, one.size()), one);
+    EXPECT_EQ(faults_of(stated("permit: 1\n  permit_samples: [3, 4]\n  hashes: none\n"))
+                  .substr(0, one.size()),
+              "m:34: can.permit_samples: invalid value (found ");
+    EXPECT_NE(effective_text(machine_of("permit_samples: [3, 11]\n")),
+              effective_text(machine_of("permit_samples: [3, 10]\n")));
 }
 
 TEST(MachineFaultsCan, StaleBeforeTheNextSampleIsRefused) {

@@ -81,7 +81,7 @@ TEST(EffectiveYaml, MarksWhatNobodyStated) {
     EXPECT_NE(text.find("    position_error_mm: 0.001\n"), std::string::npos);
     EXPECT_NE(text.find("  hashes_in: 0x582  # default\n"), std::string::npos);
     EXPECT_NE(text.find("  emergency: 0x082  # default\n"), std::string::npos);
-    EXPECT_NE(text.find("  heartbeat_timeout_us: 30000  # default\n"), std::string::npos);
+    EXPECT_NE(text.find("  heartbeat_timeout_us: 65000  # default\n"), std::string::npos);
 }
 
 /// A key that is added to the schema has to be added here.

@@ -210,7 +210,7 @@ TEST(MachinePage, TheDrivesExampleLoads) {
     other.replace(other.find("NodeID=5"), 8, "NodeID=3");
     ASSERT_EQ(faults_with(5, other, machine), "");
     EXPECT_EQ(machine.can.signals.size(), 9U);
-    EXPECT_EQ(machine.can.permit_samples, 4);
+    EXPECT_EQ(machine.can.permit_samples, (PermitSamples{4, 4}));
 }
 
 }  // namespace

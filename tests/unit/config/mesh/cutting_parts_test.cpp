@@ -134,7 +134,8 @@ double shank_to_blank_mm(Vec3d at) {
 /// weakly as it may.
 double latest_stop_mm(const Machine& machine, std::uint32_t axis, double speed_mm_s) {
     constexpr double kStepS = 1e-6;
-    double way = speed_mm_s * free_seconds(machine), speed = speed_mm_s, braking = 0;
+    double way = speed_mm_s * free_seconds(machine, machine.can.permit_samples.most),
+           speed = speed_mm_s, braking = 0;
     while (speed > 0) {
         braking = std::min(braking + machine.axes[axis].jerk_max * kStepS,
                            machine.axes[axis].stopping_min);

@@ -312,7 +312,7 @@ TEST_F(JogCertificateTest, TheWrongWayIsWithheldWithoutAStop) {
 }
 
 TEST_F(JogCertificateTest, NearerThanItBeganItStops) {
-    const double reach = jog_reach(jog_limits(m.guard.jog, m.axes[kZ]), free_seconds(m));
+    const double reach = jog_reach(jog_limits(m.guard.jog, m.axes[kZ]), free_seconds(m, 3));
     EXPECT_LT(reach, 0.1);
     // Down from afar: the margin is what is kept.
     double gap = 1;
@@ -501,7 +501,7 @@ TEST_F(JogCertificateTest, OneAxisMovesOneWay) {
     const JointBox& box = certificate->tasks()[0].box;
     EXPECT_NEAR(box.half[kX], 0.001 + 2 * 0.01, 1e-9) << "off one way now, the other way later";
     EXPECT_NEAR(box.centre[kX], 0, 1e-12);
-    const double reach = jog_reach(jog_limits(m.guard.jog, m.axes[kZ]), free_seconds(m));
+    const double reach = jog_reach(jog_limits(m.guard.jog, m.axes[kZ]), free_seconds(m, 3));
     EXPECT_NEAR(box.centre[kZ] - box.half[kZ], -59.7 - 0.001, 1e-9);
     EXPECT_NEAR(box.centre[kZ] + box.half[kZ], -59.7 + 0.001 + reach, 1e-9);
     EXPECT_NEAR(certificate->tasks()[0].margin_mm, 0.3 - 3 * (0.021 + 0.001) - kJogGiveMm,

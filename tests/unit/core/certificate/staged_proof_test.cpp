@@ -102,6 +102,72 @@ struct Slides {
     }
 };
 
+/// Pairs, each once more over a box of 32 mm.
+struct WiderSlides : Slides {
+    explicit WiderSlides(std::uint32_t pairs) : Slides(2 * pairs) {
+        for (std::uint32_t i = 0; i < pairs; ++i) {
+            tasks[pairs + i].mesh_a = tasks[i].mesh_a;
+            tasks[pairs + i].box.half[0] = 16;
+        }
+    }
+    void prove(FakeEngine& fake, const CyclePlan& plan) {
+        auto prover =
+            StagedProver::create(machine, static_cast<std::uint32_t>(tasks.size()), plan, kNoIndex);
+        work = prover->prove(fake.engine(), tasks, results, true);
+    }
+};
+
+// A pair that is far over the larger box is asked once; one that is not gets its tree over the
+// smaller box, and the larger one none.
+TEST(StagedProver, WhatIsFarOverALargerBoxIsNotAskedAgain) {
+    for (const bool prefers_batches : {false, true}) {
+        WiderSlides slides(3);
+        FakeEngine fake{.judge =
+                            [](const Query& query) {
+                                const double far_mm[] = {20, 9, 4.6};  // of each pair
+                                return query.r_mm <= far_mm[query.mesh_a - 1] ? Proof::far
+                                                                              : Proof::not_proven;
+                            },
+                        .prefers_batches = prefers_batches};
+        slides.prove(fake, Slides::plan(2, TreeForm::leaves, 8));
+        for (std::uint32_t i = 0; i < 3; ++i) {
+            EXPECT_EQ(slides.results[i].proof, JointBoxProof::proven) << i;
+            EXPECT_EQ(slides.results[3 + i].proof,
+                      i == 0 ? JointBoxProof::proven : JointBoxProof::budget_spent);
+        }
+        // Three larger boxes, those of two or all three pairs, and eight leaves of the last one.
+        EXPECT_EQ(fake.queries(), 3U + (prefers_batches ? 3U : 2U) + 8U);
+        EXPECT_EQ(fake.calls.size(), prefers_batches ? 2U : 3U) << "no launch more";
+        EXPECT_EQ(fake.groups[0].size(), 7U) << "each question a group, and the known-answer test";
+    }
+}
+
+// A larger box whose share was spent proves nothing, of the pair neither.
+TEST(StagedProver, ALargerBoxThatSpentItsShareProvesNothing) {
+    for (const bool prefers_batches : {false, true}) {
+        WiderSlides slides(1);
+        FakeEngine fake{.judge =
+                            [](const Query& query) {
+                                return query.r_mm > 9 ? Proof::far
+                                                      : Proof::not_proven;  // the larger one alone
+                            },
+                        .prefers_batches = prefers_batches,
+                        .spoil =
+                            [](std::uint32_t, std::span<const Query> queries,
+                               std::span<QueryResult>, std::span<GroupWork> groups) {
+                                for (const Query& query : queries) {
+                                    if (query.r_mm > 9) {
+                                        groups[query.group].used.box_rows =
+                                            groups[query.group].share.box_rows + 1;
+                                    }
+                                }
+                            }};
+        slides.prove(fake, Slides::plan(2, TreeForm::leaves, 8));
+        EXPECT_EQ(slides.results[1].proof, JointBoxProof::budget_spent);
+        EXPECT_EQ(slides.results[0].proof, JointBoxProof::budget_spent);
+    }
+}
+
 TEST(StagedProver, OneStageIsEnoughForWhatIsFarAsItIs) {
     Slides slides;
     FakeEngine fake = far_to(8.6);

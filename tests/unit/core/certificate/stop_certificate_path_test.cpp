@@ -149,7 +149,7 @@ TEST_F(StopCertificatePath, TheLastPermitIsTheLastThatAStopCanBearOut) {
     }
     ASSERT_TRUE(is_stopped);
     EXPECT_EQ(reason, StopReason::predicted);
-    const double stop_s = free_seconds(m) + path_braking_s(100.0 / 1500, 100.0 / 50000);
+    const double stop_s = free_seconds(m, 3) + path_braking_s(100.0 / 1500, 100.0 / 50000);
     const double gap_mm = 60 + z_at(static_cast<double>(last)) - kMarginMm - 100 * stop_s;
     EXPECT_GE(gap_mm, 0);
     EXPECT_LE(gap_mm, 0.2);
@@ -166,7 +166,7 @@ TEST_F(StopCertificatePath, QueriesPiecesWhereTheWholeIsNotProven) {
         last = has_permit ? k : last;
     }
     EXPECT_GE(most, 7U) << "proven in pieces, and not in one";
-    const double stop_s = free_seconds(m) + path_braking_s(100.0 / 1500, 100.0 / 50000);
+    const double stop_s = free_seconds(m, 3) + path_braking_s(100.0 / 1500, 100.0 / 50000);
     const double gap_mm = 60 + z_at(static_cast<double>(last)) - kMarginMm - 100 * stop_s;
     EXPECT_GE(gap_mm, 0);
     EXPECT_LE(gap_mm, 0.25) << "the leaves are 64 times as small as the stretch";
@@ -313,7 +313,7 @@ class StopCertificateLookAhead : public StopCertificatePath {
     }
     /// What is left above the margin when the latest and weakest stop from that sample is over.
     [[nodiscard]] double left_mm(std::uint64_t last) const {
-        const double stop_s = free_seconds(m) + path_braking_s(100.0 / 1500, 100.0 / 50000);
+        const double stop_s = free_seconds(m, 3) + path_braking_s(100.0 / 1500, 100.0 / 50000);
         return 60 + z_at(static_cast<double>(last)) - kMarginMm - 100 * stop_s;
     }
 };
@@ -336,7 +336,7 @@ TEST_F(StopCertificateLookAhead, WithoutThePathTheBoxHolds) {
     }
     EXPECT_TRUE(was_permitted);
     EXPECT_FALSE(is_stopped);
-    const double box = certificate->reach().half[kZ];
+    const double box = certificate->reach(3).half[kZ];
     EXPECT_TRUE(certificate->cycle().is_settled);
     EXPECT_GT(box, 0.01);
 }

@@ -5,8 +5,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "hil_replay/lab/ablations/ablations.hpp"
@@ -82,13 +85,12 @@ class StopCertificateTest : public testing::Test {
 
 // 3 periods of 1.01 ms, 20 us of jitter, 2 ms of board.
 TEST_F(StopCertificateTest, TheHorizonIsTheSumOfItsParts) {
-    EXPECT_NEAR(free_seconds(m), 3 * 1.01e-3 + 20e-6 + 2e-3, 1e-12);
-    m.can.permit_samples = 4;
+    EXPECT_NEAR(free_seconds(m, 3), 3 * 1.01e-3 + 20e-6 + 2e-3, 1e-12);
     m.guard.board_reaction_s = 1e-3;
     m.can.sample_us = 500;
-    EXPECT_NEAR(free_seconds(m), 4 * 0.505e-3 + 20e-6 + 1e-3, 1e-12);
+    EXPECT_NEAR(free_seconds(m, 4), 4 * 0.505e-3 + 20e-6 + 1e-3, 1e-12);
     m.can.format = CanFormat::signals;  // the instant of a sample is known to two periods
-    EXPECT_NEAR(free_seconds(m), 4 * 0.505e-3 + 1005e-6 + 1e-3, 1e-12);
+    EXPECT_NEAR(free_seconds(m, 4), 4 * 0.505e-3 + 1005e-6 + 1e-3, 1e-12);
 }
 
 TEST_F(StopCertificateTest, ErrorsOfAPositionAddUp) {
@@ -116,7 +118,7 @@ TEST_F(StopCertificateTest, TheDeviationsOfBothSurfacesCount) {
 TEST_F(StopCertificateTest, TheBoxHoldsTheReachOfEveryAxis) {
     make();
     stand(10, 0);
-    const JointBox box = certificate->reach();
+    const JointBox box = certificate->reach(3);
     const Axis& x = m.axes[0];
     MotionHistory history;
     for (std::uint64_t k = 1; k <= kSamplesKept; ++k) {
@@ -126,7 +128,7 @@ TEST_F(StopCertificateTest, TheBoxHoldsTheReachOfEveryAxis) {
         note_snapshot(history, snapshot, 1);
     }
     const ReachRange reach = stop_reach(
-        stop_limits(m, 0), range_of(history, 0, x, sample_errors(m, 0, 0)), free_seconds(m));
+        stop_limits(m, 0), range_of(history, 0, x, sample_errors(m, 0, 0)), free_seconds(m, 3));
     EXPECT_LE(box.centre[0] - box.half[0], reach.low);
     EXPECT_GE(box.centre[0] + box.half[0], reach.high);
     EXPECT_NEAR(box.half[0], reach.high - 10, 1e-6);
@@ -134,21 +136,21 @@ TEST_F(StopCertificateTest, TheBoxHoldsTheReachOfEveryAxis) {
     m.guard.free_jerk_limited = false;
     make();
     stand(10, 0);
-    const double half = certificate->reach().half[0];
+    const double half = certificate->reach(3).half[0];
     EXPECT_GT(half, 2);
     lab::forget_jerk_ramp(m);
     make();
     stand(10, 0);
-    EXPECT_LT(certificate->reach().half[0], 0.8 * half) << "the ablation is smaller, or is none";
+    EXPECT_LT(certificate->reach(3).half[0], 0.8 * half) << "the ablation is smaller, or is none";
 }
 
 // Only where the board never leaves the travel may the box end there.
 TEST_F(StopCertificateTest, TheTravelEndsTheBoxOnlyIfTheBoardEnforcesIt) {
     make();
     stand(m.axes[0].max, 0);
-    EXPECT_GT(certificate->reach().centre[0] + certificate->reach().half[0], m.axes[0].max + 0.1);
+    EXPECT_GT(certificate->reach(3).centre[0] + certificate->reach(3).half[0], m.axes[0].max + 0.1);
     m.guard.travel_enforced = true;
-    const JointBox box = certificate->reach();
+    const JointBox box = certificate->reach(3);
     EXPECT_NEAR(box.centre[0] + box.half[0], m.axes[0].max + 0.001, 1e-6);
     EXPECT_GT(box.half[4], 0) << "an endless axis has no travel to end at";
 }
@@ -160,7 +162,7 @@ TEST_F(StopCertificateTest, AnEnforcedTravelNeverEndsBeforeThePresentPlace) {
     for (const double beyond : {0.0, 0.01}) {
         make();
         stand(m.axes[0].max + beyond, m.axes[2].min - beyond);
-        const JointBox box = certificate->reach();
+        const JointBox box = certificate->reach(3);
         const double high = box.centre[0] + box.half[0], low = box.centre[2] - box.half[2];
         EXPECT_NEAR(high, m.axes[0].max + beyond + 0.001, 1e-6);
         EXPECT_NEAR(low, m.axes[2].min - beyond - 0.001, 1e-6);
@@ -174,10 +176,10 @@ TEST_F(StopCertificateTest, ALostSampleWidensTheBox) {
     for (int i = 0; i < 30; ++i) {
         note(0.1 * i, 0);
     }
-    const double before = certificate->reach().half[0];
+    const double before = certificate->reach(3).half[0];
     sample += 2;
     note(3.2, 0);
-    EXPECT_GT(certificate->reach().half[0], before);
+    EXPECT_GT(certificate->reach(3).half[0], before);
 }
 
 TEST_F(StopCertificateTest, OneSnapshotQueriesTheKnownAnswerTestAlone) {
@@ -301,7 +303,7 @@ TEST_F(StopCertificateTest, BothToolsCountAroundAChangeOfTheNumber) {
         }
         return tools;
     };
-    const auto samples = static_cast<int>(std::ceil(free_seconds(m) * 1e6 / m.can.sample_us));
+    const auto samples = static_cast<int>(std::ceil(free_seconds(m, 3) * 1e6 / m.can.sample_us));
     ASSERT_GE(samples, 3);
     EXPECT_EQ(tools_queried(), "0");
     for (int i = 0; i <= samples; ++i) {
@@ -326,7 +328,7 @@ TEST_F(StopCertificateTest, EveryToolCountsWhoseNumberWasJustSaid) {
     certificate.emplace(certificate_over(three, m));
     sample = 0;
     stand(0, 0);
-    const auto samples = static_cast<int>(std::ceil(free_seconds(m) * 1e6 / m.can.sample_us));
+    const auto samples = static_cast<int>(std::ceil(free_seconds(m, 3) * 1e6 / m.can.sample_us));
     note(0, 0, kModeMoving, m.tools[1].number);
     note(0, 0, kModeMoving, m.tools[2].number);
     certificate->prove(three.engine().engine(), three.containment_test());
@@ -361,7 +363,7 @@ TEST_F(StopCertificateTest, TheFirstSnapshotHasOneTool) {
 TEST_F(StopCertificateTest, AStopThatMayEndInTheMarginIsNotProven) {
     make();
     stand(0, 0);
-    const double down = certificate->reach().half[2];
+    const double down = certificate->reach(3).half[2];
     for (const double gap : {1.5 * down + 0.1, 0.9 * down}) {
         make();
         stand(0, -100 + 0.5 + gap);
@@ -370,6 +372,98 @@ TEST_F(StopCertificateTest, AStopThatMayEndInTheMarginIsNotProven) {
                   gap > down)
             << gap;
     }
+}
+
+TEST_F(StopCertificateTest, SamplesAreTriedFromALadderThatEndsAtTheMost) {
+    const auto up_from = [](PermitSamples range, std::uint8_t samples) {
+        std::string steps;
+        while (samples != range.most) {
+            samples = samples_above(range, samples);
+            steps += std::to_string(samples) + ' ';
+        }
+        return steps;
+    };
+    EXPECT_EQ(up_from({3, 12}, 3), "4 5 6 8 10 12 ");
+    EXPECT_EQ(up_from({3, 15}, 10), "12 15 ");
+    EXPECT_EQ(up_from({5, 9}, 5), "6 8 9 ");
+    EXPECT_EQ(samples_above({3, 12}, 12), 12);
+    EXPECT_EQ(samples_below({3, 12}, 12), 10);
+    EXPECT_EQ(samples_below({3, 9}, 9), 8);
+    EXPECT_EQ(samples_below({3, 12}, 4), 4) << "the least of all is asked anyway";
+    EXPECT_EQ(samples_below({9, 12}, 12), 10);
+    EXPECT_EQ(samples_below({9, 12}, 10), 10);
+    EXPECT_EQ(samples_below({13, 14}, 14), 14);
+}
+
+// n is what was proven of every pair: of one that has not the room for the longest, the least in
+// the cycle that finds out, and then the longest of the ladder that it has room for.
+TEST_F(StopCertificateTest, ThePermitIsAsLongAsTheShortestThatAPairIsProvenWith) {
+    m.can.permit_samples = {3, 12};
+    make();
+    stand(0, 0);
+    prove();
+    EXPECT_TRUE(all_proven());
+    EXPECT_EQ(certificate->cycle().samples, 12) << "the first is tried with the most";
+    EXPECT_EQ(query_count, 4U) << "each pair once, and the known-answer test";
+    for (const std::uint8_t room : std::to_array<std::uint8_t>({4, 5, 6, 8, 10})) {
+        const auto needed_mm = [this](std::uint8_t n) {  // X and Z move the pair together
+            const JointBox box = certificate->reach(n);
+            return std::hypot(box.half[0], box.half[2]);
+        };
+        const double least = needed_mm(room), next = needed_mm(samples_above({3, 12}, room));
+        ASSERT_LT(least, next);
+        make();
+        stand(0, -100 + 0.5 + 0.5 * (least + next));
+        std::uint8_t best = 0;
+        for (int cycle = 0; cycle < 20; ++cycle) {
+            prove();
+            certificate->keep();
+            ASSERT_TRUE(all_proven());
+            const std::uint8_t samples = certificate->cycle().samples;
+            ASSERT_TRUE(samples == 3 || needed_mm(samples) < next) << +samples;
+            best = std::max(best, samples);
+        }
+        EXPECT_EQ(best, room);
+    }
+    m.can.permit_samples = {5, 5};
+    make();
+    stand(0, 0);
+    prove();
+    EXPECT_EQ(certificate->cycle().samples, 5) << "one number is always that";
+}
+
+// Proving again without `keep` proves the same: what is tried next is a matter of the next cycle.
+TEST_F(StopCertificateTest, TheSameSnapshotIsProvenWithTheSameSamples) {
+    m.can.permit_samples = {3, 12};
+    make();
+    stand(0, 0);
+    const double room = certificate->reach(8).half[2];
+    make();
+    stand(0, -100 + 0.5 + 1.01 * room);
+    for (int cycle = 0; cycle < 4; ++cycle) {
+        prove();
+        const std::uint8_t samples = certificate->cycle().samples;
+        prove();
+        EXPECT_EQ(certificate->cycle().samples, samples);
+        certificate->keep();
+    }
+}
+
+// The longest permit may still be in force when the next is a short one.
+TEST_F(StopCertificateTest, TheLastToolCountsUntilTheLongestPermitHasEnded) {
+    m.can.permit_samples = {3, 12};
+    make();
+    stand(0, 0);
+    const auto samples = static_cast<int>(std::ceil(free_seconds(m, 12) * 1e6 / m.can.sample_us));
+    ASSERT_GE(samples, 12);
+    for (int i = 0; i <= samples; ++i) {
+        note(0, 0, kModeMoving, m.tools[1].number);
+        prove();
+        EXPECT_EQ(certificate->cycle().proofs.size(), 3U) << i;
+    }
+    note(0, 0, kModeMoving, m.tools[1].number);
+    prove();
+    EXPECT_EQ(certificate->cycle().proofs.size(), 2U);
 }
 
 TEST_F(StopCertificateTest, ABodyInsideAnotherIsSeenAtTheStart) {

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <set>
 #include <string>
@@ -16,11 +17,8 @@
 namespace axg {
 namespace {
 
-constexpr GuardLimits kLimits{.snapshots_min = 3,
-                              .silent_periods = 3,
-                              .snapshot_age_us = 3000,
-                              .bad_weight = 3,
-                              .bad_limit = 12};
+constexpr GuardLimits kLimits{
+    .snapshots_min = 3, .period_us = 1000, .bad_weight = 3, .bad_limit = 12};
 
 /// A guard and what it said last.
 struct Fixture {
@@ -30,11 +28,12 @@ struct Fixture {
     void on(GuardEvent event) { out = on_event(guard, event, kLimits); }
     void on(GuardEventKind kind) { on(GuardEvent{.kind = kind}); }
     void fault(GuardFault fault) { on({.kind = GuardEventKind::fault, .fault = fault}); }
-    void snapshot(bool is_proven = true, std::int64_t age_us = 900) {
+    void snapshot(bool is_proven = true, std::int64_t age_us = 900, std::uint8_t samples = 3) {
         on({.kind = GuardEventKind::snapshot,
             .is_proven = is_proven,
             .period = guard.period,
-            .age_us = age_us});
+            .age_us = age_us,
+            .samples = samples});
     }
     void deadline() { on(GuardEventKind::deadline); }
     void good_period() { snapshot(), deadline(); }
@@ -204,7 +203,7 @@ TEST(GuardState, AnEventThatIsNoneStops) {
 
 TEST(GuardState, PermitsASnapshotUpToItsAgeOnce) {
     for (const auto& [age_us, is_permitted] :
-         {std::pair<std::int64_t, bool>{-1, false}, {0, true}, {2999, true}, {3000, false}}) {
+         {std::pair<std::int64_t, bool>{-1, false}, {0, true}, {2000, true}, {2001, false}}) {
         Fixture fixture = in_phase(GuardPhase::armed);
         fixture.snapshot(true, age_us);
         EXPECT_EQ(fixture.out.sends_permit, is_permitted) << age_us;
@@ -226,7 +225,8 @@ TEST(GuardState, AnEvaluationOfAnotherPeriodIsNone) {
         fixture.on({.kind = GuardEventKind::snapshot,
                     .is_proven = true,
                     .period = fixture.guard.period - off,
-                    .age_us = 0});
+                    .age_us = 0,
+                    .samples = 3});
         EXPECT_FALSE(fixture.out.sends_permit) << off;
     }
     fixture.guard.period = 0xffffffffU;
@@ -355,7 +355,43 @@ TEST(GuardState, ADisturbedPeriodHadItsPermitAndIsNoSilence) {
     other.fault(GuardFault::input_noise), other.good_period();
     miss(other, 1);
     EXPECT_EQ(other.guard.phase, GuardPhase::armed) << "two missed, not in a row";
-    EXPECT_EQ(other.guard.silent, 1U);
+    EXPECT_EQ(other.guard.held, 2U);
+}
+
+// Whoever has sent a permit for n periods bears n - 1 without one, and a shorter one that follows
+// takes nothing away from it.
+TEST(GuardState, IsSilentWhenTheLastPermitHasEnded) {
+    for (const std::uint8_t longest : std::to_array<std::uint8_t>({3, 8, 12, 15})) {
+        for (const std::uint8_t after : std::to_array<std::uint8_t>({2, 3})) {
+            Fixture fixture = in_phase(GuardPhase::armed);
+            fixture.snapshot(true, 900, longest), fixture.deadline();
+            fixture.snapshot(true, 900, after), fixture.deadline();
+            fixture.guard.bad = 0;
+            for (int i = 1; i < std::max(longest - 1, int{after}); ++i) {
+                fixture.guard.bad = 0;  // it is not the flapping that is tested
+                fixture.deadline();
+                ASSERT_EQ(fixture.guard.phase, GuardPhase::armed) << int{longest} << ' ' << i;
+            }
+            fixture.guard.bad = 0;
+            fixture.deadline();
+            EXPECT_EQ(fixture.guard.phase, GuardPhase::stopped) << int{longest};
+            EXPECT_EQ(fixture.guard.cause, GuardFault::silence);
+        }
+    }
+}
+
+TEST(GuardState, APermitIsNotSentThatEndsWithinAPeriod) {
+    for (const std::uint8_t samples : std::to_array<std::uint8_t>({2, 3, 12})) {
+        const std::int64_t latest_us = (samples - 1) * kLimits.period_us;
+        Fixture fixture = in_phase(GuardPhase::armed);
+        fixture.snapshot(true, latest_us + 1, samples);
+        EXPECT_FALSE(fixture.out.sends_permit) << int{samples};
+        fixture.snapshot(true, latest_us, samples);
+        EXPECT_TRUE(fixture.out.sends_permit) << int{samples};
+    }
+    Fixture fixture = in_phase(GuardPhase::armed);
+    fixture.snapshot(true, 0, 0);
+    EXPECT_FALSE(fixture.out.sends_permit) << "no n is no permit";
 }
 
 TEST(GuardState, AResetForgetsAllEvidence) {
@@ -363,7 +399,7 @@ TEST(GuardState, AResetForgetsAllEvidence) {
     miss(fixture, 2);  // half the leaky count
     fixture.fault(GuardFault::input);
     fixture.on(GuardEventKind::board_ack), fixture.deadline(), fixture.deadline();
-    EXPECT_EQ(fixture.guard.bad + fixture.guard.good + fixture.guard.silent, 0U);
+    EXPECT_EQ(fixture.guard.bad + fixture.guard.good + fixture.guard.held, 0U);
     fixture.on(GuardEventKind::reset_edge), fixture.on(GuardEventKind::loaded);
     for (int i = 0; i < 9; ++i) {
         fixture.good_period();
@@ -414,11 +450,13 @@ TEST(GuardState, OneBadPeriodInFourIsBorneForEverOneInThreeIsNot) {
 TEST(GuardState, TheMonitorsCycleIsItsEvent) {
     CycleResult cycle;
     cycle.has_permit = true;
+    cycle.samples = 5;
     const GuardEvent proven = guard_event_of(cycle, 7, 800);
     EXPECT_EQ(proven.kind, GuardEventKind::snapshot);
     EXPECT_TRUE(proven.is_proven);
     EXPECT_EQ(proven.period, 7U);
     EXPECT_EQ(proven.age_us, 800);
+    EXPECT_EQ(proven.samples, 5U);
     cycle.has_permit = false;
     EXPECT_FALSE(guard_event_of(cycle, 7, 800).is_proven);
     EXPECT_EQ(guard_event_of(cycle, 7, 800).kind, GuardEventKind::snapshot);

@@ -38,11 +38,11 @@ struct Slides {
             tasks[i].box.half[0] = 64;
         }
     }
-    StagedWork prove(LongestCycle& cycle, const CyclePlan& plan) {
+    StagedWork prove(LongestCycle& cycle, const CyclePlan& plan, bool has_wider = false) {
         auto prover = StagedProver::create(machine, static_cast<std::uint32_t>(tasks.size()), plan,
                                            kKnownAnswerMesh);
         cycle.begin();
-        return prover->prove(cycle.engine(), tasks, results);
+        return prover->prove(cycle.engine(), tasks, results, has_wider);
     }
 };
 
@@ -64,8 +64,8 @@ void expect_full(const CyclePlan& plan, const CycleShape& shape) {
                  ", stages " + std::to_string(plan.stages));
     std::optional<LongestCycle> cycle = cycle_of(plan, shape);
     ASSERT_TRUE(cycle);
-    Slides slides(shape.tasks);
-    const StagedWork work = slides.prove(*cycle, plan);
+    Slides slides(shape.asks_twice ? 2 * shape.tasks : shape.tasks);
+    const StagedWork work = slides.prove(*cycle, plan, shape.asks_twice);
     ASSERT_FALSE(cycle->is_other());
     EXPECT_EQ(work.known_answer_signature, kKnownAnswerSignature);
     EXPECT_EQ(work.queries, queries_of(cycle->done()));
@@ -75,15 +75,18 @@ void expect_full(const CyclePlan& plan, const CycleShape& shape) {
         if (stage.groups == 0) {  // left out
             continue;
         }
-        const WorkLists share = share_of(plan.lists[i], stage.groups);
+        const WorkLists share =
+            i == 0 ? first_share_of(plan.lists[0], shape.tasks, plan.stages == 1, shape.asks_twice)
+                   : share_of(plan.lists[i], stage.groups);
         EXPECT_EQ(stage.lists,
                   (WorkLists{share.node_pairs * stage.groups, share.leaf_pairs * stage.groups,
                              share.box_rows * stage.groups, share.triangle_pairs * stage.groups,
                              share.rechecks * stage.groups}))
             << "stage " << i;
     }
-    for (const JointBoxResult& result : slides.results) {
-        EXPECT_EQ(result.proof, JointBoxProof::proven);
+    for (std::uint32_t i = 0; i < slides.results.size(); ++i) {
+        EXPECT_EQ(slides.results[i].proof,
+                  i < shape.tasks ? JointBoxProof::proven : JointBoxProof::budget_spent);
     }
 }
 
@@ -100,6 +103,27 @@ TEST(LongestCycle, FillsEveryListOfEveryStageInEveryLayout) {
                         expect_full(plan, shape);
                     }
                 }
+            }
+        }
+    }
+}
+
+// With a longer permit that proves nothing the first stage asks of each pair twice.
+TEST(LongestCycle, FillsAFirstStageThatAsksTwice) {
+    for (const std::uint32_t stages : {1U, 2U, 3U}) {
+        for (const std::uint32_t tasks : {1U, 8U, 24U}) {
+            const CyclePlan plan = plan_of(stages, tasks, 510, kUsual);
+            const std::vector<CycleShape> once = cycle_shapes(plan, tasks);
+            const std::vector<CycleShape> twice = cycle_shapes(plan, tasks, true);
+            ASSERT_EQ(once.size(), twice.size());
+            for (std::size_t i = 0; i < twice.size(); ++i) {
+                CycleShape shape = twice[i];
+                shape.layout = CycleLayout::rows;
+                expect_full(plan, shape);
+                std::optional<LongestCycle> cycle = cycle_of(plan, shape);
+                std::optional<LongestCycle> single = cycle_of(plan, once[i]);
+                ASSERT_TRUE(cycle && single);
+                EXPECT_EQ(queries_of(cycle->planned()), queries_of(single->planned()) + tasks);
             }
         }
     }

@@ -237,7 +237,7 @@ TEST_P(GuardNodeTest, ASilentEngineStops) {
     EXPECT_LE(permits_since(0), sent + 1) << "an answer may have been given before";
     EXPECT_EQ(guard().phase, GuardPhase::stopped);
     const std::int64_t limit_us =
-        (world.machine.can.permit_samples + 1) * std::int64_t{world.machine.can.sample_us};
+        (world.machine.can.permit_samples.most + 1) * std::int64_t{world.machine.can.sample_us};
     EXPECT_GE(world.count_sent(world.machine.can.stop_id, from_us), 1U);
     expect_stopped(guard().cause, from_us + limit_us - 1000);
     EXPECT_TRUE(guard().cause == GuardFault::silence || guard().cause == GuardFault::engine);

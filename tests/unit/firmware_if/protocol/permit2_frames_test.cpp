@@ -68,8 +68,8 @@ TEST(Permit2Frames, JogAndStopOrderNoCap) {
 }
 
 TEST(Permit2Frames, AProvenCycleIsAPermitForItsSample) {
-    CycleResult result{.has_permit = true, .known_answer_signature = 0xC5A3};
-    const Permit2 run = permit2_of(result, 42, 17, 15);
+    CycleResult result{.has_permit = true, .known_answer_signature = 0xC5A3, .samples = 15};
+    const Permit2 run = permit2_of(result, 42, 17);
     EXPECT_EQ(run.word, PermitWord::run);
     EXPECT_EQ(run.sync_counter, 17);
     EXPECT_EQ(run.live_counter, 42);
@@ -79,29 +79,29 @@ TEST(Permit2Frames, AProvenCycleIsAPermitForItsSample) {
     EXPECT_EQ(run.samples, 15);
     EXPECT_EQ(run.level, 0);
     result.advisories.clearance_level = ClearanceLevel::warn;
-    EXPECT_EQ(permit2_of(result, 1, 1, 3).level, 1);
-    EXPECT_EQ(permit2_of(result, 1, 1, 3).word, PermitWord::run);
+    EXPECT_EQ(permit2_of(result, 1, 1).level, 1);
+    EXPECT_EQ(permit2_of(result, 1, 1).word, PermitWord::run);
     result.advisories.clearance_level = ClearanceLevel::slow;
-    EXPECT_EQ(permit2_of(result, 1, 1, 3).level, 2);
-    EXPECT_EQ(permit2_of(result, 1, 1, 3).word, PermitWord::slow);
+    EXPECT_EQ(permit2_of(result, 1, 1).level, 2);
+    EXPECT_EQ(permit2_of(result, 1, 1).word, PermitWord::slow);
     result.advisories.clearance_level = ClearanceLevel::stop;
-    EXPECT_EQ(permit2_of(result, 1, 1, 3).level, 3);
+    EXPECT_EQ(permit2_of(result, 1, 1).level, 3);
     result.known_answer_signature = 0x1234;
-    EXPECT_EQ(permit2_of(result, 1, 1, 3).known_answer_signature, 0x1234) << "the engine's own";
+    EXPECT_EQ(permit2_of(result, 1, 1).known_answer_signature, 0x1234) << "the engine's own";
 }
 
 // Without a promise of the board the cap is advice, for all axes; 0 would be an order to hold.
 TEST(Permit2Frames, TheSpeedCapIsAdviceForAllAxes) {
     CycleResult result{.has_permit = true};
     result.advisories.speed_cap = 60;
-    EXPECT_EQ(permit2_of(result, 1, 1, 3).cap, 60);
-    EXPECT_EQ(permit2_of(result, 1, 1, 3).mask, 0xFF);
+    EXPECT_EQ(permit2_of(result, 1, 1).cap, 60);
+    EXPECT_EQ(permit2_of(result, 1, 1).mask, 0xFF);
     result.advisories.speed_cap = 0;
-    EXPECT_EQ(permit2_of(result, 1, 1, 3).cap, 1);
+    EXPECT_EQ(permit2_of(result, 1, 1).cap, 1);
 }
 
 TEST(Permit2Frames, ACycleWithoutAPermitHasNoSamples) {
-    const Permit2 stop = permit2_of({}, 1, 2, 3);
+    const Permit2 stop = permit2_of({.samples = 3}, 1, 2);
     EXPECT_EQ(stop.word, PermitWord::stop);
     EXPECT_EQ(stop.samples, 0);
     EXPECT_EQ(stop.cap, kPermitCapNone);
