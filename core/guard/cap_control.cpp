@@ -40,7 +40,7 @@ bool CapControl::bind_one_more(const CapCycle& cycle) noexcept {
     return is_new;
 }
 
-void CapControl::lower(const CapCycle& cycle) noexcept {
+void CapControl::fall(const CapCycle& cycle) noexcept {
     const std::uint8_t before = order_.cap;
     bool has_more = false;
     if (promise_ == CapPromise::all_axes) {
@@ -60,7 +60,7 @@ void CapControl::lower(const CapCycle& cycle) noexcept {
     }
 }
 
-void CapControl::raise(const CapCycle& cycle) noexcept {
+void CapControl::rise(const CapCycle& cycle) noexcept {
     order_.cap = raised_cap();
     raised_us_ = cycle.sample_us;
     if (order_.cap == kCapRapid) {
@@ -77,7 +77,7 @@ CapOrder CapControl::update(const CapCycle& cycle) noexcept {
     const bool is_crawling = cap == kCapCrawl && cycle.wanted >= kCapCrawl;
     if ((is_wish_lower || !cycle.is_proven) && cap != kCapHold && !is_crawling) {
         has_room_ = false;
-        lower(cycle);
+        fall(cycle);
         return order_;
     }
     const bool had_room = has_room_;
@@ -89,7 +89,7 @@ CapOrder CapControl::update(const CapCycle& cycle) noexcept {
                         cycle.sample_us - room_since_us_ >= kCapRoomUs &&
                         (raised_us_ == INT64_MIN || cycle.sample_us - raised_us_ >= kCapRaiseUs);
     if (is_due && cycle.is_raise_proven) {
-        raise(cycle);
+        rise(cycle);
     }
     return order_;
 }

@@ -51,8 +51,8 @@ class CapControl {
     }
 
   private:
-    void lower(const CapCycle& cycle) noexcept;
-    void raise(const CapCycle& cycle) noexcept;
+    void fall(const CapCycle& cycle) noexcept;
+    void rise(const CapCycle& cycle) noexcept;
     [[nodiscard]] bool bind_one_more(const CapCycle& cycle) noexcept;
     [[nodiscard]] bool has_room(std::uint8_t wanted) const noexcept;
 
