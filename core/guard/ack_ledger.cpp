@@ -68,4 +68,11 @@ AckedCaps AckLedger::note_ack(std::optional<std::uint8_t> nibble) noexcept {
     return acked;
 }
 
+AckedCaps AckLedger::note_recent_ack(std::optional<std::uint8_t> nibble) noexcept {
+    if (newest_ != 0) {
+        oldest_ = std::max(oldest_, newest_ - (kNibbles - 1));
+    }
+    return note_ack(nibble);
+}
+
 }  // namespace axg

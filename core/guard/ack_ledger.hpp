@@ -2,7 +2,7 @@
 // Which caps a board may be keeping that names a permit by the low four bits of its number. The
 // same bits come again with every sixteenth permit, and a board that slows down names an old permit
 // for as long as that takes: so of all permits that the bits may mean the highest caps count.
-// Source: docs/theory/certificate.md, "An enforced cap".
+// Source: docs/reference/board.md, "The cap".
 #pragma once
 
 #include <array>
@@ -49,6 +49,10 @@ class AckLedger {
     /// A sample names a permit. Permits that were sent after its latch do not make the bound lower.
     /// Precondition: below 16.
     [[nodiscard]] AckedCaps note_ack(std::optional<std::uint8_t> nibble) noexcept;
+    /// The same of a board that names a permit for one of its last 16 samples or none, with one
+    /// permit a sample at most: what the bits mean is then known, and no slow-down leaves the
+    /// ledger behind. No rule of docs/reference/board.md asks a board for that yet.
+    [[nodiscard]] AckedCaps note_recent_ack(std::optional<std::uint8_t> nibble) noexcept;
 
     /// So many permits were sent after the oldest one that the last ack may mean.
     [[nodiscard]] std::uint64_t behind() const noexcept { return newest_ - oldest_; }

@@ -19,9 +19,10 @@ std::uint8_t CapControl::raised_cap() const noexcept {
         std::min<std::uint32_t>(kCapRapid, cap + std::max(1U, cap / kRaiseShare)));
 }
 
-/// An eighth more than what is in force, and at least a crawl.
+/// An eighth more than what is in force. Of hold nothing is wished for: the proof of a crawl is
+/// enough.
 bool CapControl::has_room(std::uint8_t wanted) const noexcept {
-    return wanted >= kCapCrawl && (wanted == kCapRapid || 8U * wanted >= 9U * order_.cap);
+    return wanted == kCapRapid || 8U * wanted >= 9U * order_.cap;
 }
 
 /// The mask takes another axis. False: it has all of them.
@@ -74,7 +75,8 @@ CapOrder CapControl::update(const CapCycle& cycle) noexcept {
     }
     const std::uint32_t cap = order_.cap;
     const bool is_wish_lower = 16U * cycle.wanted < 15U * cap;
-    const bool is_crawling = cap == kCapCrawl && cycle.wanted >= kCapCrawl;
+    // What is wished for looks ahead, and with fewer boxes than the proof: alone it ends no crawl.
+    const bool is_crawling = cap == kCapCrawl && (cycle.wanted >= kCapCrawl || cycle.is_proven);
     if ((is_wish_lower || !cycle.is_proven) && cap != kCapHold && !is_crawling) {
         has_room_ = false;
         fall(cycle);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which cap the next permit orders: down at once, up in small steps and only by what is proven, a
 // crawl, and hold. Pure, from cycle to cycle. It enters no proof: whatever it orders, a permit is
-// sent for what was proven with that cap. Source: docs/theory/certificate.md, "An enforced cap".
+// sent for what was proven with that cap. No guard uses it yet. Source: docs/reference/board.md,
+// "The cap".
 #pragma once
 
 #include <array>

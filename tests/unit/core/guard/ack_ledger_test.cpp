@@ -98,6 +98,21 @@ TEST(AckLedger, StaysBehindByWholeRounds) {
     EXPECT_EQ(ledger.behind(), 80U);
 }
 
+TEST(AckLedger, IsNotBehindABoardThatNamesRecentPermitsAlone) {
+    AckLedger ledger;
+    send(ledger, 15, 20, kCapRapid);
+    EXPECT_EQ(cap_of(ledger.note_recent_ack(20 % 16)), kCapRapid);
+    for (unsigned i = 21; i <= 115; ++i) {
+        ledger.note_sent(static_cast<std::uint8_t>(i), equal_caps(60));
+        EXPECT_EQ(ledger.note_recent_ack({}).caps, rapid_caps());
+    }
+    EXPECT_EQ(cap_of(ledger.note_recent_ack(115 % 16)), 60);
+    EXPECT_EQ(ledger.behind(), 0U);
+    send(ledger, 116, 117, 10);
+    EXPECT_EQ(cap_of(ledger.note_recent_ack(115 % 16)), 60);
+    EXPECT_EQ(cap_of(ledger.note_recent_ack(116 % 16)), 10);
+}
+
 TEST(AckLedger, RemembersBeyondWhatItKeeps) {
     AckLedger ledger;
     send(ledger, 250, 260, kCapRapid);  // the counter wraps

@@ -93,7 +93,8 @@ TEST(CapControl, CrawlsBeforeItHolds) {
     Guard guard;
     EXPECT_EQ(guard.step(0).cap, kCapCrawl);
     EXPECT_EQ(guard.step(kCapCrawl, false).cap, kCapCrawl) << "nothing is lowered at a crawl";
-    EXPECT_EQ(guard.step(0).cap, kCapHold);
+    EXPECT_EQ(guard.step(0, true).cap, kCapCrawl) << "as long as it is proven";
+    EXPECT_EQ(guard.step(0, false).cap, kCapHold);
     EXPECT_FALSE(guard.control.is_held(guard.cycle.sample_us + kCapHeldUs - 1));
     EXPECT_TRUE(guard.control.is_held(guard.cycle.sample_us + kCapHeldUs));
 }
@@ -101,11 +102,12 @@ TEST(CapControl, CrawlsBeforeItHolds) {
 TEST(CapControl, LeavesHoldByACrawlThatIsProven) {
     Guard guard;
     guard.step(0);
-    guard.step(0);
-    EXPECT_EQ(guard.steps(500, 0).cap, kCapHold);
+    guard.step(0, false);
+    EXPECT_EQ(guard.steps(500, 0, true, false).cap, kCapHold);
     EXPECT_EQ(guard.control.raised_cap(), kCapCrawl);
-    EXPECT_EQ(guard.steps(100, 3).cap, kCapHold);
-    EXPECT_EQ(guard.step(3).cap, kCapCrawl);
+    guard.step(0, false);
+    EXPECT_EQ(guard.steps(100, 0).cap, kCapHold);
+    EXPECT_EQ(guard.step(0).cap, kCapCrawl);
 }
 
 TEST(CapControl, BindsOneAxisMoreAsLongAsItDoesNotProve) {
