@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/base/assert.hpp"
@@ -39,6 +40,12 @@ AxisLimits stop_limits(const Machine& machine, std::uint32_t axis) noexcept {
             .jerk_max = of.jerk_max,
             .stopping_min = of.stopping_min,
             .stop_turns_round = machine.guard.stop_reversal == StopReversal::jerk_limited};
+}
+
+double capped_speed(const Axis& axis, double share) noexcept {
+    // Half a line of motion within +-f of its command, both with accelerations up to a.
+    const double swing = 2 * std::sqrt(2 * axis.acceleration_max * axis.following_error);
+    return std::min(axis.speed_max, (share * axis.speed_max + swing) * kUp);
 }
 
 double free_seconds(const Machine& machine, std::uint32_t samples) noexcept {
@@ -100,6 +107,7 @@ StopCertificate::StopCertificate(const Machine& machine, const StopOptions& opti
     samples_ = machine.can.permit_samples.least;
     samples_try_ = samples_next_ = machine.can.permit_samples.most;
     limit_rules_ = limit_rules(machine, options_.count);
+    speed_bound_.fill(std::numeric_limits<double>::infinity());
 }
 
 std::optional<StopCertificate> StopCertificate::create(const Machine& machine,
@@ -236,6 +244,11 @@ void StopCertificate::note_tool(const AxisSnapshot& before, bool is_first) noexc
     }
 }
 
+void StopCertificate::bound_speeds(std::span<const double> speeds) noexcept {
+    AXG_ASSERT(speeds.size() == machine_->axes.size());
+    std::copy(speeds.begin(), speeds.end(), speed_bound_.begin());
+}
+
 void StopCertificate::note_path(const PathPoints& points) noexcept {
     if (path_ && !path_->note_path(points)) {
         took_back_ = true;
@@ -261,7 +274,9 @@ JointBox StopCertificate::reach(std::uint32_t samples) const noexcept {
         const Axis& axis = machine_->axes[i];
         const SampleErrors errors = errors_of(i);
         const AxisRange now = this->now(i);
-        ReachRange range = stop_reach(stop_limits(*machine_, i), now, free_s);
+        AxisLimits limits = stop_limits(*machine_, i);
+        limits.speed_max = std::min(limits.speed_max, speed_bound_[i]);
+        ReachRange range = stop_reach(limits, now, free_s);
         if (machine_->guard.travel_enforced && !axis.unlimited) {
             range.low = std::max(range.low, std::min(axis.min - errors.position, now.low));
             range.high = std::min(range.high, std::max(axis.max + errors.position, now.high));

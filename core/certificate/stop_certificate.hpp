@@ -38,6 +38,11 @@ namespace axg {
 
 [[nodiscard]] AxisLimits stop_limits(const Machine& machine, std::uint32_t axis) noexcept;
 
+/// How fast an axis gets at most whose commands its board keeps below this share of its largest
+/// speed: it swings about them within its following error, and a stop may begin at any point of
+/// that.
+[[nodiscard]] double capped_speed(const Axis& axis, double share) noexcept;
+
 /// A pair with one tool, its box still to be said.
 /// @param extents  [surfaces] the engine's, in its order; they must outlive the task
 [[nodiscard]] JointBoxTask pair_task(const Machine& machine, std::uint32_t pair, std::uint32_t tool,
@@ -86,6 +91,12 @@ class StopCertificate {
 
     /// Commands that the board announces: until a stop begins, or through the stop too.
     void note_path(const PathPoints& points) noexcept;
+
+    /// From the newest snapshot to standstill no axis is faster than this, by an enforced cap: in
+    /// the next `prove`s, until it is called again. Not for a jog, and not for a look-ahead path,
+    /// which have bounds of their own.
+    /// @param speeds  [axes] mm/s or rad/s, 0 or more; beyond the largest it bounds nothing
+    void bound_speeds(std::span<const double> speeds) noexcept;
 
     /// Bounds where the axes can get, and runs the queries. The same for the same snapshots, until
     /// `keep`. Cost: at most the plan, and a containment test for each pair whose position has left
@@ -201,6 +212,7 @@ class StopCertificate {
     std::uint32_t slot_count_ = 0, proof_count_ = 0;
 
     AxisSnapshot snapshot_;
+    std::array<double, kAxesMax> speed_bound_{};
     MotionHistory history_;
     LimitRules limit_rules_;
     LimitWatch limit_watch_;

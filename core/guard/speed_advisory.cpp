@@ -70,14 +70,16 @@ Going go_on(double speed, double acceleration, double jerk, double fastest, doub
 
 /// How far forwards an axis gets that goes on for `lead_s` and is then stopped as the certificate
 /// allows for. A later sample will know its speed and acceleration no worse than this one does.
-double capped_distance(const AxisLimits& limits, const AxisRange& now, double fastest,
-                       double lead_s, double free_s) noexcept {
+/// @param is_enforced  once it is obeyed the axis gets no faster than `fastest`, whatever comes
+double capped_distance(AxisLimits limits, const AxisRange& now, double fastest, double lead_s,
+                       double free_s, bool is_enforced) noexcept {
     const double speed = 0.5 * (now.speed_low + now.speed_high);
     const double acceleration = 0.5 * (now.acceleration_low + now.acceleration_high);
     const Going end = go_on(speed, acceleration, limits.jerk_max, fastest, lead_s);
     const double slack =
         0.5 * (now.speed_high - now.speed_low) + kPeriodShare * std::fabs(end.speed - speed);
     const double unknown = 0.5 * (now.acceleration_high - now.acceleration_low);
+    limits.speed_max = is_enforced ? std::min(limits.speed_max, fastest) : limits.speed_max;
     return end.way + forward_reach(limits, end.speed - slack, end.speed + slack, free_s,
                                    end.acceleration + unknown);
 }
@@ -90,7 +92,8 @@ AxisRanges ranges_of(const Machine& machine, const StopCertificate& certificate)
     return ranges;
 }
 
-JointBox capped_box(const Machine& machine, const AxisRanges& ranges, double share) noexcept {
+JointBox capped_box(const Machine& machine, const AxisRanges& ranges, double share,
+                    bool is_enforced) noexcept {
     const double free_s = free_seconds(machine, machine.can.permit_samples.least);
     const double lead_s = cap_lead_seconds(machine);
     JointBox box;
@@ -101,8 +104,9 @@ JointBox capped_box(const Machine& machine, const AxisRanges& ranges, double sha
         // The axis can not follow a cap that falls faster than this.
         limits.stopping_min = std::min(limits.stopping_min, limits.acceleration_max);
         const double speed = share * axis.speed_max;
-        double low = now.low - capped_distance(limits, mirrored(now), speed, lead_s, free_s);
-        double high = now.high + capped_distance(limits, now, speed, lead_s, free_s);
+        double low =
+            now.low - capped_distance(limits, mirrored(now), speed, lead_s, free_s, is_enforced);
+        double high = now.high + capped_distance(limits, now, speed, lead_s, free_s, is_enforced);
         if (machine.guard.travel_enforced && !axis.unlimited) {
             low = std::max(low, std::min(axis.min, now.low));
             high = std::min(high, std::max(axis.max, now.high));
@@ -141,10 +145,10 @@ std::uint32_t feeds_about(std::uint32_t last, Feeds& out) noexcept {
 
 JointBox capped_reach(const Machine& machine, const StopCertificate& certificate,
                       double share) noexcept {
-    return capped_box(machine, ranges_of(machine, certificate), share);
+    return capped_box(machine, ranges_of(machine, certificate), share, false);
 }
 
-std::optional<SpeedAdvisory> SpeedAdvisory::create(const Machine& machine) {
+std::optional<SpeedAdvisory> SpeedAdvisory::create(const Machine& machine, bool is_enforced) {
     const std::uint32_t pairs = stop_tasks(machine);
     const std::uint32_t tasks = pairs * kFeeds;
     const std::uint32_t queries = queries_of(cycle_plan(machine, pairs));
@@ -160,6 +164,7 @@ std::optional<SpeedAdvisory> SpeedAdvisory::create(const Machine& machine) {
     advisory.results_ = advisory.arena_.take<JointBoxResult>(tasks);
     advisory.open_ = advisory.arena_.take<std::uint32_t>(pairs);
     advisory.arena_.seal();
+    advisory.is_enforced_ = is_enforced;
     return advisory;
 }
 
@@ -194,7 +199,7 @@ std::uint8_t SpeedAdvisory::search(const Engine& engine, const StopCertificate& 
     };
     Feeds feeds{};
     const std::uint32_t feed_count = feeds_about(last, feeds);
-    const JointBox widest = capped_box(*machine_, ranges, share_of(feeds[0]));
+    const JointBox widest = capped_box(*machine_, ranges, share_of(feeds[0]), is_enforced_);
     for (std::uint32_t i = 0; i < pairs.size(); ++i) {
         put(i, i, widest);
     }
@@ -213,7 +218,7 @@ std::uint8_t SpeedAdvisory::search(const Engine& engine, const StopCertificate& 
     const std::uint32_t first = feed_count - std::min(feed_count, queries / open);
     std::uint32_t tasks = 0;
     for (std::uint32_t feed = first; feed < feed_count; ++feed) {
-        const JointBox box = capped_box(*machine_, ranges, share_of(feeds[feed]));
+        const JointBox box = capped_box(*machine_, ranges, share_of(feeds[feed]), is_enforced_);
         for (std::uint32_t i = 0; i < open; ++i) {
             put(tasks++, open_[i], box);
         }

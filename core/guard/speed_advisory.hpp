@@ -34,7 +34,9 @@ namespace axg {
 class SpeedAdvisory {
   public:
     /// `machine` must outlive it. Empty: memory ran out.
-    [[nodiscard]] static std::optional<SpeedAdvisory> create(const Machine& machine);
+    /// @param is_enforced  the board keeps all axes within the cap, and the certificate knows
+    [[nodiscard]] static std::optional<SpeedAdvisory> create(const Machine& machine,
+                                                             bool is_enforced = false);
 
     /// The cap at the certificate's last `prove`, of the pairs that were queried. The search goes
     /// on from call to call: the cap rises to little more than twice its value in one, and falls at
@@ -73,6 +75,7 @@ class SpeedAdvisory {
     std::span<std::uint32_t> open_;  // pairs that the fastest feed leaves unproven
     std::uint32_t queries_count_ = 0;
     std::uint8_t cap_ = 0;
+    bool is_enforced_ = false;
 };
 
 }  // namespace axg

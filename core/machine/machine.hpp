@@ -193,6 +193,10 @@ enum class StopReversal : std::uint8_t {
     return reversal == StopReversal::jerk_limited ? "jerk_limited" : "none";
 }
 
+/// Whether a board keeps its axes within the cap of a permit. all_axes: one that can only scale its
+/// whole motion.
+enum class CapPromise : std::uint8_t { none = 0, all_axes, per_axis };
+
 /// single_jog: while the board reports a jog, only one axis is commanded to move, one way, within
 /// these, whatever the axis could do.
 struct JogRules {

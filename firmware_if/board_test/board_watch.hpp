@@ -17,9 +17,6 @@
 
 namespace axg {
 
-/// guard.cap: what binds the speed of the axes.
-enum class CapPromise : std::uint8_t { none = 0, all_axes, per_axis };
-
 struct WatchedState {
     bool is_judged = false;
     std::uint64_t faults = 0;

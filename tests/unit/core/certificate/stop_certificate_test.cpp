@@ -144,6 +144,42 @@ TEST_F(StopCertificateTest, TheBoxHoldsTheReachOfEveryAxis) {
     EXPECT_LT(certificate->reach(3).half[0], 0.8 * half) << "the ablation is smaller, or is none";
 }
 
+// An enforced cap: an axis at rest gets less far, one at hold nowhere, and a bound beyond rapid
+// bounds nothing.
+TEST_F(StopCertificateTest, ABoundOfTheSpeedsEndsTheBox) {
+    m.guard.free_jerk_limited = false;
+    make();
+    stand(10, 0);
+    const JointBox free = certificate->reach(3);
+    std::vector<double> speeds;
+    for (const Axis& axis : m.axes) {
+        speeds.push_back(2 * axis.speed_max);
+    }
+    certificate->bound_speeds(speeds);
+    EXPECT_EQ(certificate->reach(3).half, free.half);
+    speeds[0] = m.axes[0].speed_max / 250;
+    certificate->bound_speeds(speeds);
+    const JointBox crawl = certificate->reach(3);
+    EXPECT_LT(crawl.half[0], 0.1 * free.half[0]);
+    EXPECT_EQ(crawl.half[2], free.half[2]);
+    speeds[0] = 0;
+    certificate->bound_speeds(speeds);
+    const double errors = sample_errors(m, 0, 0).position;
+    EXPECT_NEAR(certificate->reach(3).half[0], errors, 1e-9);
+    EXPECT_GE(certificate->reach(3).half[0], errors);
+}
+
+TEST_F(StopCertificateTest, AnAxisSwingsAboutItsCappedCommands) {
+    Axis axis = m.axes[0];
+    axis.speed_max = 500;
+    axis.acceleration_max = 4000;
+    axis.following_error = 0;
+    EXPECT_NEAR(capped_speed(axis, 0.1), 50, 1e-6);
+    axis.following_error = 0.01;
+    EXPECT_NEAR(capped_speed(axis, 0.1), 50 + 17.889, 1e-3);
+    EXPECT_EQ(capped_speed(axis, 0.99), 500);
+}
+
 // Only where the board never leaves the travel may the box end there.
 TEST_F(StopCertificateTest, TheTravelEndsTheBoxOnlyIfTheBoardEnforcesIt) {
     make();

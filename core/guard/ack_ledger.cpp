@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/guard/ack_ledger.hpp"
+
+#include <algorithm>
+
+#include "core/base/assert.hpp"
+
+namespace axg {
+
+AxisCaps caps_of_permit(std::uint8_t cap, std::uint8_t mask) noexcept {
+    constexpr std::size_t kLastBit = 7;
+    AxisCaps caps{};
+    for (std::size_t axis = 0; axis < caps.size(); ++axis) {
+        const bool is_bound = ((mask >> std::min(axis, kLastBit)) & 1U) != 0;
+        caps[axis] = is_bound ? cap : kCapRapid;
+    }
+    return caps;
+}
+
+AxisCaps higher_caps(const AxisCaps& a, const AxisCaps& b) noexcept {
+    AxisCaps caps{};
+    std::transform(a.begin(), a.end(), b.begin(), caps.begin(),
+                   [](std::uint8_t one, std::uint8_t other) { return std::max(one, other); });
+    return caps;
+}
+
+void AckLedger::note_sent(std::uint8_t live_counter, const AxisCaps& caps) noexcept {
+    const bool is_next = static_cast<std::uint8_t>(newest_ + 1) == live_counter;
+    if (newest_ == 0 || !is_next) {
+        clear();
+        newest_ = first_ = oldest_ = kKept + live_counter;
+    } else {
+        ++newest_;
+        AxisCaps& out = kept_[newest_ % kKept];
+        const std::uint64_t leaves = newest_ - kKept;
+        if (leaves >= oldest_) {
+            const std::uint64_t nibble = leaves % kNibbles;
+            const bool is_first = forgotten_last_[nibble] < oldest_;
+            forgotten_[nibble] = is_first ? out : higher_caps(forgotten_[nibble], out);
+            forgotten_last_[nibble] = leaves;
+        }
+    }
+    kept_[newest_ % kKept] = caps;
+}
+
+AckedCaps AckLedger::note_ack(std::optional<std::uint8_t> nibble) noexcept {
+    if (!nibble) {
+        return {};
+    }
+    AXG_ASSERT(*nibble < kNibbles);
+    const std::uint64_t ahead = (*nibble + kNibbles - oldest_ % kNibbles) % kNibbles;
+    if (newest_ == 0 || oldest_ + ahead > newest_) {
+        return {.status = AckStatus::unknown};
+    }
+    oldest_ += ahead;
+    AckedCaps acked{.status = AckStatus::known, .caps = {}};
+    if (forgotten_last_[*nibble] >= oldest_) {
+        acked.caps = forgotten_[*nibble];
+    }
+    const std::uint64_t kept_from = std::max(first_, newest_ - kKept + 1);
+    std::uint64_t at = oldest_;
+    if (at < kept_from) {
+        at += (kept_from - at + kNibbles - 1) / kNibbles * kNibbles;
+    }
+    for (; at <= newest_; at += kNibbles) {
+        acked.caps = higher_caps(acked.caps, kept_[at % kKept]);
+    }
+    return acked;
+}
+
+AckedCaps AckLedger::note_recent_ack(std::optional<std::uint8_t> nibble) noexcept {
+    if (newest_ != 0) {
+        oldest_ = std::max(oldest_, newest_ - (kNibbles - 1));
+    }
+    return note_ack(nibble);
+}
+
+}  // namespace axg

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/guard/cap_control.hpp"
+
+#include <algorithm>
+
+#include "core/base/assert.hpp"
+
+namespace axg {
+namespace {
+
+constexpr std::uint8_t kAllAxes = 0xFF;
+constexpr std::uint32_t kRaiseShare = 32;
+
+}  // namespace
+
+std::uint8_t CapControl::raised_cap() const noexcept {
+    const std::uint32_t cap = order_.cap;
+    return static_cast<std::uint8_t>(
+        std::min<std::uint32_t>(kCapRapid, cap + std::max(1U, cap / kRaiseShare)));
+}
+
+/// An eighth more than what is in force. Of hold nothing is wished for: the proof of a crawl is
+/// enough.
+bool CapControl::has_room(std::uint8_t wanted) const noexcept {
+    return wanted == kCapRapid || 8U * wanted >= 9U * order_.cap;
+}
+
+/// The mask takes another axis. False: it has all of them.
+bool CapControl::bind_one_more(const CapCycle& cycle) noexcept {
+    constexpr std::uint32_t kLastBit = 7;
+    AXG_ASSERT(cycle.axis_count <= cycle.axes.size());
+    for (std::uint32_t i = 0; i < cycle.axis_count; ++i) {
+        const std::uint32_t bit = std::min<std::uint32_t>(cycle.axes[i], kLastBit);
+        if ((order_.mask >> bit & 1U) == 0) {
+            order_.mask = static_cast<std::uint8_t>(order_.mask | 1U << bit);
+            return true;
+        }
+    }
+    const bool is_new = order_.mask != kAllAxes;
+    order_.mask = kAllAxes;
+    return is_new;
+}
+
+void CapControl::fall(const CapCycle& cycle) noexcept {
+    const std::uint8_t before = order_.cap;
+    bool has_more = false;
+    if (promise_ == CapPromise::all_axes) {
+        order_.mask = kAllAxes;
+    } else if (order_.mask == 0 || !cycle.is_proven) {
+        has_more = bind_one_more(cycle);
+    }
+    std::uint32_t cap = std::min(before, cycle.wanted);
+    if (!cycle.is_proven && !has_more) {  // no wish explains it: a quarter less a cycle
+        cap = std::min(cap, before * 3U / 4);
+    }
+    // From more than a crawl the first step is down to it: hold is for what a crawl cannot.
+    const std::uint32_t least = before > kCapCrawl ? kCapCrawl : kCapHold;
+    order_.cap = static_cast<std::uint8_t>(std::max(cap, least));
+    if (order_.cap == kCapHold) {
+        held_since_us_ = cycle.sample_us;
+    }
+}
+
+void CapControl::rise(const CapCycle& cycle) noexcept {
+    order_.cap = raised_cap();
+    raised_us_ = cycle.sample_us;
+    if (order_.cap == kCapRapid) {
+        order_.mask = 0;
+    }
+}
+
+CapOrder CapControl::update(const CapCycle& cycle) noexcept {
+    if (promise_ == CapPromise::none) {
+        return order_;
+    }
+    const std::uint32_t cap = order_.cap;
+    const bool is_wish_lower = 16U * cycle.wanted < 15U * cap;
+    // What is wished for looks ahead, and with fewer boxes than the proof: alone it ends no crawl.
+    const bool is_crawling = cap == kCapCrawl && (cycle.wanted >= kCapCrawl || cycle.is_proven);
+    if ((is_wish_lower || !cycle.is_proven) && cap != kCapHold && !is_crawling) {
+        has_room_ = false;
+        fall(cycle);
+        return order_;
+    }
+    const bool had_room = has_room_;
+    has_room_ = cycle.is_proven && has_room(cycle.wanted);
+    if (!had_room) {
+        room_since_us_ = cycle.sample_us;
+    }
+    const bool is_due = has_room_ && cap < kCapRapid &&
+                        cycle.sample_us - room_since_us_ >= kCapRoomUs &&
+                        (raised_us_ == INT64_MIN || cycle.sample_us - raised_us_ >= kCapRaiseUs);
+    if (is_due && cycle.is_raise_proven) {
+        rise(cycle);
+    }
+    return order_;
+}
+
+}  // namespace axg

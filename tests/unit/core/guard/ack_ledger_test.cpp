@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// Four bits name a permit: every permit that they may mean counts, and none of before. The whole
+// with a board that loses permits: tests/property/core/guard/ack_ledger_test.cpp.
+#include "core/guard/ack_ledger.hpp"
+
+#include <gtest/gtest.h>
+
+namespace axg {
+namespace {
+
+AxisCaps equal_caps(std::uint8_t cap) {
+    return caps_of_permit(cap, 0xFF);
+}
+
+/// Permits with these numbers, all with one cap.
+void send(AckLedger& ledger, unsigned first, unsigned last, std::uint8_t cap) {
+    for (unsigned i = first; i <= last; ++i) {
+        ledger.note_sent(static_cast<std::uint8_t>(i), equal_caps(cap));
+    }
+}
+
+std::uint8_t cap_of(const AckedCaps& acked) {
+    EXPECT_EQ(acked.status, AckStatus::known);
+    return acked.caps[0];
+}
+
+TEST(AckLedger, ThePermitsMaskBindsItsAxes) {
+    const AxisCaps caps = caps_of_permit(60, 0b1000'0110);
+    EXPECT_EQ(caps[0], kCapRapid);
+    EXPECT_EQ(caps[1], 60);
+    EXPECT_EQ(caps[2], 60);
+    EXPECT_EQ(caps[6], kCapRapid);
+    EXPECT_EQ(caps[7], 60);
+    EXPECT_EQ(caps[12], 60);
+    EXPECT_EQ(higher_caps(caps, equal_caps(100))[0], kCapRapid);
+    EXPECT_EQ(higher_caps(caps, equal_caps(100))[1], 100);
+}
+
+TEST(AckLedger, WithoutAnAckEveryAxisMayRunAtRapid) {
+    AckLedger ledger;
+    send(ledger, 1, 4, 10);
+    const AckedCaps none = ledger.note_ack({});
+    EXPECT_EQ(none.status, AckStatus::none);
+    EXPECT_EQ(none.caps, rapid_caps());
+}
+
+TEST(AckLedger, APermitThatIsNamedCounts) {
+    AckLedger ledger;
+    send(ledger, 1, 4, 100);
+    EXPECT_EQ(cap_of(ledger.note_ack(3)), 100);
+    EXPECT_EQ(ledger.behind(), 1U);
+    ledger.note_sent(5, caps_of_permit(40, 1));
+    EXPECT_EQ(cap_of(ledger.note_ack(4)), 100) << "the order is not in force yet";
+    const AckedCaps acked = ledger.note_ack(5);
+    EXPECT_EQ(cap_of(acked), 40);
+    EXPECT_EQ(acked.caps[1], kCapRapid);
+}
+
+TEST(AckLedger, APermitOfBeforeIsUnknown) {
+    AckLedger ledger;
+    EXPECT_EQ(ledger.note_ack(3).status, AckStatus::unknown);
+    send(ledger, 1, 4, 100);
+    EXPECT_EQ(ledger.note_ack(0).status, AckStatus::unknown);
+    EXPECT_EQ(cap_of(ledger.note_ack(3)), 100);
+    EXPECT_EQ(ledger.note_ack(2).status, AckStatus::unknown);
+    EXPECT_EQ(ledger.note_ack(2).caps, rapid_caps());
+    ledger.clear();
+    EXPECT_EQ(ledger.note_ack(3).status, AckStatus::unknown);
+}
+
+// The board takes 95 periods to slow down, and names the last permit without the cap meanwhile.
+TEST(AckLedger, ABoardThatSlowsDownIsNotTakenForOneThatHas) {
+    AckLedger ledger;
+    send(ledger, 15, 20, kCapRapid);
+    for (unsigned i = 21; i <= 115; ++i) {
+        ledger.note_sent(static_cast<std::uint8_t>(i), equal_caps(60));
+        EXPECT_EQ(cap_of(ledger.note_ack(20 % 16)), kCapRapid) << i;
+    }
+    EXPECT_EQ(cap_of(ledger.note_ack(115 % 16)), 60);
+}
+
+// What is known is no more than the bits say: the ledger stays behind by whole rounds of them, and
+// takes so long longer to believe the next slow-down.
+TEST(AckLedger, StaysBehindByWholeRounds) {
+    AckLedger ledger;
+    send(ledger, 15, 20, kCapRapid);
+    EXPECT_EQ(cap_of(ledger.note_ack(20 % 16)), kCapRapid);
+    send(ledger, 21, 115, 60);
+    EXPECT_EQ(cap_of(ledger.note_ack(115 % 16)), 60);
+    EXPECT_EQ(ledger.behind(), 80U);
+    send(ledger, 116, 116, 10);
+    for (unsigned i = 117; i <= 195; ++i) {
+        send(ledger, i, i, 10);
+        EXPECT_EQ(cap_of(ledger.note_ack(i % 16)), 60) << i;
+    }
+    send(ledger, 196, 196, 10);
+    EXPECT_EQ(cap_of(ledger.note_ack(196 % 16)), 10);
+    EXPECT_EQ(ledger.behind(), 80U);
+}
+
+TEST(AckLedger, IsNotBehindABoardThatNamesRecentPermitsAlone) {
+    AckLedger ledger;
+    send(ledger, 15, 20, kCapRapid);
+    EXPECT_EQ(cap_of(ledger.note_recent_ack(20 % 16)), kCapRapid);
+    for (unsigned i = 21; i <= 115; ++i) {
+        ledger.note_sent(static_cast<std::uint8_t>(i), equal_caps(60));
+        EXPECT_EQ(ledger.note_recent_ack({}).caps, rapid_caps());
+    }
+    EXPECT_EQ(cap_of(ledger.note_recent_ack(115 % 16)), 60);
+    EXPECT_EQ(ledger.behind(), 0U);
+    send(ledger, 116, 117, 10);
+    EXPECT_EQ(cap_of(ledger.note_recent_ack(115 % 16)), 60);
+    EXPECT_EQ(cap_of(ledger.note_recent_ack(116 % 16)), 10);
+}
+
+TEST(AckLedger, RemembersBeyondWhatItKeeps) {
+    AckLedger ledger;
+    send(ledger, 250, 260, kCapRapid);  // the counter wraps
+    EXPECT_EQ(cap_of(ledger.note_ack(260 % 16)), kCapRapid);
+    send(ledger, 261, 1000, 60);
+    EXPECT_EQ(cap_of(ledger.note_ack(260 % 16)), kCapRapid);
+    EXPECT_EQ(cap_of(ledger.note_ack(261 % 16)), 60);
+    EXPECT_EQ(cap_of(ledger.note_ack(260 % 16)), kCapRapid) << "higher than it may be, not lower";
+}
+
+TEST(AckLedger, AGapInTheNumbersForgetsWhatWasBefore) {
+    AckLedger ledger;
+    send(ledger, 1, 4, 10);
+    send(ledger, 9, 9, 60);
+    EXPECT_EQ(ledger.note_ack(4).status, AckStatus::unknown);
+    EXPECT_EQ(cap_of(ledger.note_ack(9)), 60);
+}
+
+}  // namespace
+}  // namespace axg
