@@ -156,9 +156,13 @@ TEST_F(CudaGuardChain, MayRunOnlyWhereItsLongestCycleFits) {
 TEST_F(CudaGuardChain, ShortListsOnlyKeepPermitsBack) {
     // With three, where a list is full on the GPU alone, the CPU may go deeper and use more.
     paper.loaded.machine.cycle.stages = 2;
-    paper.loaded.machine.cycle.lists = {48, 60, 768, 256, 0};
+    paper.loaded.machine.cycle.lists = {24, 30, 384, 128, 0};
     AXG_GPU_OR_SKIP(gpu);
     const std::vector<CanFrame> frames = simulated(test::kDemoProgram);
+    LoadedMachine roomy = paper.loaded;
+    roomy.machine.cycle.lists = {1U << 16U, 1U << 16U, 1U << 20U, 1U << 20U, 0};
+    const Decisions all =
+        replayed(roomy, *paper.containment_test, paper.engine->engine(), frames, true);
     const Decisions cpu =
         replayed(paper.loaded, *paper.containment_test, paper.engine->engine(), frames, true);
     const Decisions found =
@@ -170,6 +174,7 @@ TEST_F(CudaGuardChain, ShortListsOnlyKeepPermitsBack) {
         ASSERT_NE(found.samples[i].reason, StopReason::known_answer) << "sample " << i;
     }
     EXPECT_LE(found.permits, cpu.permits);
+    EXPECT_LT(found.permits, all.permits) << "the lists are short enough to be noticed";
     EXPECT_GT(found.permits, 30'000U);
 }
 
