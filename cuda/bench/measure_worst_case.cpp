@@ -95,6 +95,19 @@ class Hog {
     bool is_ready_ = false;
 };
 
+constexpr std::uint32_t kAmple = 1U << 30U;
+
+/// One group of them all, or none. Of an exact layout the batch's own size is the end of its lists.
+std::vector<GroupWork> groups_of(const Capacities& capacities, const WorstCaseCycle& cycle,
+                                 WorstCaseLayout layout) {
+    const BatchCapacities& batch = capacities.batch;
+    const WorkLists lists{batch.level_pairs, batch.leaf_pairs, batch.box_rows, batch.triangle_pairs,
+                          batch.rechecks};
+    const bool is_exact = layout != WorstCaseLayout::overflowing;
+    const WorkLists share = is_exact ? WorkLists{kAmple, kAmple, kAmple, kAmple, kAmple} : lists;
+    return std::vector<GroupWork>(cycle.is_stage ? 1 : 0, {.share = share});
+}
+
 /// The batch did what it was made for: an exact layout fills every list, an overflowing one leaves
 /// every query unproven.
 std::string wrong_work(CudaEngine& engine, const WorstCaseBatch& worst_case, WorstCaseLayout layout,
@@ -106,8 +119,8 @@ std::string wrong_work(CudaEngine& engine, const WorstCaseBatch& worst_case, Wor
         fault = "the longest batch did other work than it was made for: a bug";
     }
     for (const QueryResult& result : results) {
-        const bool is_right = is_exact ? result.status == QueryStatus::ok
-                                       : result.status == QueryStatus::too_many_node_pairs;
+        const bool is_right =
+            is_exact ? result.status == QueryStatus::ok : is_overflow(result.status);
         if (fault.empty() && !is_right) {
             fault = "the longest batch got an answer it should not get: a bug";
         }
@@ -115,13 +128,12 @@ std::string wrong_work(CudaEngine& engine, const WorstCaseBatch& worst_case, Wor
     return fault;
 }
 
-/// A cycle's launches: how many of the batch's queries each of them runs.
-using Launches = std::vector<std::size_t>;
-
 /// Empty, or why this condition could not be measured.
 std::string measure_line(CudaEngine& engine, const WorstCaseBatch& worst_case,
-                         const Launches& launches, Condition condition, Hog& hog,
-                         std::uint32_t count, WorstCaseMeasurement::Line& line) {
+                         const std::vector<GroupWork>& groups, std::uint32_t launches,
+                         Condition condition, Hog& hog, std::uint32_t count,
+                         WorstCaseMeasurement::Line& line) {
+    std::vector<GroupWork> work = groups;
     std::vector<QueryResult> results(worst_case.queries.size());
     line.cycle_us.reserve(count);
     for (std::uint32_t i = 0; i < count && engine.fault() == nullptr; ++i) {
@@ -129,9 +141,9 @@ std::string measure_line(CudaEngine& engine, const WorstCaseBatch& worst_case,
             return "the GPU has no room for what the longest batch is measured beside";
         }
         const Clock::time_point start = Clock::now();
-        engine.begin_cycle();
-        for (const std::size_t query_count : launches) {
-            engine.run({worst_case.queries.data(), query_count}, {results.data(), query_count});
+        for (std::uint32_t launch = 0; launch < launches; ++launch) {
+            std::copy(groups.begin(), groups.end(), work.begin());
+            engine.run(worst_case.queries, results, work);
         }
         const std::chrono::duration<double, std::micro> spent = Clock::now() - start;
         line.cycle_us.push_back(spent.count());
@@ -142,25 +154,19 @@ std::string measure_line(CudaEngine& engine, const WorstCaseBatch& worst_case,
     return engine.fault() == nullptr ? std::string() : engine.fault();
 }
 
-/// One way to deal a cycle's queries and lists out to its launches.
-struct Split {
-    const char* name;
-    Capacities cycle;       // of the engine
-    Capacities launch;      // what the batch fills: those, or a launch's part of them
-    std::uint32_t queries;  // of the batch
-    Launches launches;
-};
-
-std::string measure_split(const Split& split, const CudaOptions& options, WorstCaseLayout layout,
-                          std::optional<Hog>& hog, WorstCaseMeasurement& out) {
+std::string measure_layout(const Capacities& capacities, const CudaOptions& options,
+                           WorstCaseLayout layout, std::optional<Hog>& hog,
+                           WorstCaseMeasurement& out) {
     WorstCaseBatch worst_case;
-    std::string fault = make_worst_case_batch(split.launch, split.queries, out.cycle.tree_levels,
-                                              layout, worst_case);
+    const std::uint32_t queries =
+        std::min(out.cycle.queries, std::clamp(options.queries_max, 1U, kBatchQueriesMax));
+    std::string fault =
+        make_worst_case_batch(capacities, queries, out.cycle.tree_levels, layout, worst_case);
     if (!fault.empty()) {
         return fault;
     }
     std::optional<CudaEngine> engine =
-        CudaEngine::Parts::engine_over(worst_case.bodies, split.cycle, options, fault);
+        CudaEngine::Parts::engine_over(worst_case.bodies, capacities, options, fault);
     if (!engine) {
         return fault;
     }
@@ -173,12 +179,14 @@ std::string measure_split(const Split& split, const CudaOptions& options, WorstC
         query.list = list;  // naming what touches is work too
     }
     std::vector<QueryResult> results(worst_case.queries.size());
-    engine->run(worst_case.queries, results);
+    const std::vector<GroupWork> groups = groups_of(capacities, out.cycle, layout);
+    std::vector<GroupWork> work = groups;
+    engine->run(worst_case.queries, results, work);
     fault = engine->fault() == nullptr ? wrong_work(*engine, worst_case, layout, results) : "";
     for (const Condition condition : kConditions) {
-        WorstCaseMeasurement::Line line{name_of(layout), name_of(condition), split.name, {}};
+        WorstCaseMeasurement::Line line{name_of(layout), name_of(condition), {}};
         if (fault.empty()) {
-            fault = measure_line(*engine, worst_case, split.launches, condition, *hog,
+            fault = measure_line(*engine, worst_case, groups, out.cycle.launches, condition, *hog,
                                  std::max(1U, out.cycle.count / 3), line);
         }
         for (const double us : line.cycle_us) {
@@ -189,30 +197,6 @@ std::string measure_split(const Split& split, const CudaOptions& options, WorstC
     return fault;
 }
 
-/// Everything in the first launch; what queries are left then, in the others.
-Split at_once(const Capacities& capacities, const WorstCaseCycle& cycle, std::uint32_t room) {
-    const std::uint32_t first = std::min(cycle.queries, room);
-    Split split{"at once", capacities, capacities, first, {first}};
-    const std::uint32_t others = cycle.launches - 1;
-    if (others != 0) {
-        const std::uint32_t each = (cycle.queries - first + others - 1) / others;
-        split.launches.resize(cycle.launches, std::clamp(each, 1U, first));
-    }
-    return split;
-}
-
-/// The same part of everything in each launch.
-Split dealt_out(const Capacities& capacities, const WorstCaseCycle& cycle, std::uint32_t room) {
-    const auto part = [&cycle](std::uint32_t all) { return std::max(1U, all / cycle.launches); };
-    const std::uint32_t each = (cycle.queries + cycle.launches - 1) / cycle.launches;
-    Split split{"dealt out", capacities, capacities, std::min(each, room), {}};
-    BatchCapacities& batch = split.launch.batch;
-    batch = {part(batch.level_pairs), part(batch.leaf_pairs), part(batch.box_rows),
-             part(batch.triangle_pairs), part(batch.rechecks)};
-    split.launches.assign(cycle.launches, split.queries);
-    return split;
-}
-
 }  // namespace
 
 std::optional<WorstCaseMeasurement> measure_worst_case(const Capacities& capacities,
@@ -221,18 +205,11 @@ std::optional<WorstCaseMeasurement> measure_worst_case(const Capacities& capacit
                                                        std::string& fault) {
     WorstCaseMeasurement out;
     out.cycle = cycle;
-    const std::uint32_t room = std::clamp(options.queries_max, 1U, kBatchQueriesMax);
-    std::vector<Split> splits{at_once(capacities, cycle, room)};
-    if (cycle.launches > 1) {
-        splits.push_back(dealt_out(capacities, cycle, room));
-    }
     std::optional<Hog> hog;
     for (const WorstCaseLayout layout : kWorstCaseLayouts) {
-        for (const Split& split : splits) {
-            fault = measure_split(split, options, layout, hog, out);
-            if (!fault.empty()) {
-                return std::nullopt;
-            }
+        fault = measure_layout(capacities, options, layout, hog, out);
+        if (!fault.empty()) {
+            return std::nullopt;
         }
     }
     return out;

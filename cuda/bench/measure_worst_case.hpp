@@ -18,16 +18,15 @@ namespace axg {
 /// What a cycle may come to, and how often to measure it.
 struct WorstCaseCycle {
     std::uint32_t tree_levels = 2;  // CudaEngine::tree_levels() of the machine's engine
-    std::uint32_t launches = 1;     // of a cycle, which share the lists
-    std::uint32_t queries = 512;    // of a cycle, in all launches; of one launch at most 512
+    std::uint32_t launches = 1;     // of a cycle, each with all lists full
+    std::uint32_t queries = 512;    // of a launch
+    bool is_stage = false;          // they are in a group, whose work is charged
     std::uint32_t count = 150;      // cycles of each way to fill it, a third under each condition
 };
 
 struct WorstCaseMeasurement {
     struct Line {
-        // split: how the launches of a cycle share the lists. "at once": the first takes all of
-        // them, the others a few queries each; "dealt out": equal parts.
-        std::string layout, condition, split;
+        std::string layout, condition;
         std::vector<double> cycle_us;  // in the order they were measured
     };
     CudaDevice device;

@@ -23,7 +23,8 @@ CudaEngine::~CudaEngine() = default;
 void CudaEngine::run(std::span<const Query>, std::span<QueryResult>) noexcept {
     AXG_ASSERT(false);
 }
-void CudaEngine::begin_cycle() noexcept {
+void CudaEngine::run(std::span<const Query>, std::span<QueryResult>,
+                     std::span<GroupWork>) noexcept {
     AXG_ASSERT(false);
 }
 Engine CudaEngine::engine() noexcept {

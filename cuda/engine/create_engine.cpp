@@ -12,6 +12,8 @@ namespace {
 
 using namespace cuda;
 
+constexpr std::uint32_t kWarmUpUs = 10'000'000;
+
 /// Gives out one block of memory, or with no block counts what would be needed.
 class MemoryBlock {
   public:
@@ -60,7 +62,7 @@ void place_lists(DeviceBuffers& b, const DeviceLimits& other, MemoryBlock& block
         block.take<std::byte>(queries * prepared_query_size_bytes()));
     b.tallies = block.take<Tally>(queries);
     b.counters = block.take<Counters>(1);
-    b.cycle_budget = block.take<BatchBudget>(1);
+    b.groups = block.take<GroupSums>(queries);
     b.sums.wanted = block.take<unsigned long long>(b.sums.slices);
     b.sums.found = block.take<unsigned long long>(2);
     const std::uint32_t level_pairs = std::max(limits.level_pairs, other.level_pairs);
@@ -79,10 +81,14 @@ void place_pinned(CudaEngine::Parts& parts, MemoryBlock& host, MemoryBlock& devi
     parts.queries = host.take<Query>(limits.queries);
     parts.results = host.take<DeviceResult>(limits.queries);
     parts.listed = host.take<TriangleIds>(std::size_t{limits.queries} * limits.listed);
+    parts.groups_in = host.take<GroupSums>(limits.queries);
+    parts.groups_out = host.take<DeviceGroupResult>(limits.queries);
     parts.buffers.head = device.take<BatchHead>(1);
     parts.buffers.queries = device.take<Query>(limits.queries);
     parts.buffers.results = device.take<DeviceResult>(limits.queries);
     parts.buffers.listed = device.take<TriangleIds>(std::size_t{limits.queries} * limits.listed);
+    parts.buffers.groups_in = device.take<GroupSums>(limits.queries);
+    parts.buffers.groups_out = device.take<DeviceGroupResult>(limits.queries);
 }
 
 /// A batch of proofs and counts.
@@ -112,6 +118,17 @@ DeviceLimits clearance_limits_of(DeviceLimits limits, const CudaOptions& options
     limits.leaf_pairs = options.leaf_pairs;
     limits.box_rows = limits.batch_triangle_pairs = limits.batch_rechecks = kNoLimit;
     limits.measures = true;
+    return limits;
+}
+
+/// A batch of queries in groups: their shares bound it, and no capacity a query. Its lists are
+/// those of a clearance, far longer than shares of a plan are together.
+DeviceLimits stage_limits_of(DeviceLimits limits, const DeviceLimits& clearance) {
+    limits.level_pairs = clearance.level_pairs;
+    limits.leaf_pairs = clearance.leaf_pairs;
+    limits.box_rows = limits.batch_triangle_pairs = limits.batch_rechecks = kNoLimit;
+    limits.node_pairs = limits.triangle_pairs = kNoLimit;
+    limits.is_stage = true;
     return limits;
 }
 
@@ -186,7 +203,8 @@ bool sum_trees(CudaEngine::Parts& parts, const Trees& trees, std::string& fault)
                    "sums of the trees", fault);
 }
 
-cudaError_t launch_batch(const DeviceBuffers& b, const Launch& launch, bool measures) {
+cudaError_t launch_batch(const DeviceBuffers& b, const Launch& launch) {
+    const bool measures = b.limits.measures;
     cudaError_t error = launch_prepare_queries(b, launch);
     const auto next = [&error](cudaError_t status) {
         error = error != cudaSuccess ? error : status;
@@ -211,7 +229,8 @@ cudaError_t launch_batch(const DeviceBuffers& b, const Launch& launch, bool meas
     return error;
 }
 
-bool record(const CudaEngine::Parts& parts, bool measures, BatchGraph& out, std::string& fault) {
+bool record(const CudaEngine::Parts& parts, const DeviceLimits& limits, BatchGraph& out,
+            std::string& fault) {
     int capability = 0;
     if (failed(cudaDeviceGetAttribute(&capability, cudaDevAttrComputeCapabilityMajor, 0),
                "compute capability", fault)) {
@@ -224,13 +243,26 @@ bool record(const CudaEngine::Parts& parts, bool measures, BatchGraph& out, std:
         return false;
     }
     DeviceBuffers buffers = parts.buffers;
-    buffers.limits = measures ? parts.clearance_limits : buffers.limits;
-    const cudaError_t launched = launch_batch(buffers, launch, measures);
+    buffers.limits = limits;
+    const cudaError_t launched = launch_batch(buffers, launch);
     return !failed(cudaStreamEndCapture(launch.stream, &out.graph), "recording the batch", fault) &&
            !failed(launched, "recording the batch", fault) &&
            !failed(cudaGraphInstantiate(&out.exec, out.graph, 0), "the batch's graph", fault) &&
            !failed(cudaGraphUpload(out.exec, launch.stream), "uploading the graph", fault) &&
            !failed(cudaStreamSynchronize(launch.stream), "uploading the graph", fault);
+}
+
+/// One batch of each kind.
+void warm_up(CudaEngine& engine) {
+    Query query;
+    query.r_mm = 1;
+    query.pose.t[0] = 1e3;
+    QueryResult result;
+    engine.run({&query, 1}, {&result, 1});
+    GroupWork group{.share = kKnownAnswerShare};
+    engine.run({&query, 1}, {&result, 1}, {&group, 1});
+    query.kind = QueryKind::clearance;
+    engine.run({&query, 1}, {&result, 1});
 }
 
 }  // namespace
@@ -268,21 +300,23 @@ std::optional<CudaEngine> CudaEngine::Parts::engine_over(const TreeBodies& bodie
     Trees trees{bodies, std::vector<DeviceTree>(bodies.trees.size())};
     parts->buffers.limits = limits_of(capacities, options, bodies);
     parts->clearance_limits = clearance_limits_of(parts->buffers.limits, options);
+    parts->stage_limits = stage_limits_of(parts->buffers.limits, parts->clearance_limits);
+    parts->groups_here.reserve(parts->buffers.limits.queries);
+    parts->place_of_group.assign(kGroupsMax, kNoGroup);
     if (!reserve(*parts, trees, fault) || !sum_trees(*parts, trees, fault) ||
-        !record(*parts, false, parts->proofs, fault) ||
-        !record(*parts, true, parts->clearances, fault)) {
+        // Copies and zeroes are on another stream than the batches.
+        failed(cudaDeviceSynchronize(), "filling the memory", fault) ||
+        !record(*parts, parts->buffers.limits, parts->proofs, fault) ||
+        !record(*parts, parts->clearance_limits, parts->clearances, fault) ||
+        !record(*parts, parts->stage_limits, parts->stages, fault)) {
         return std::nullopt;
     }
     // The first launch of a kernel loads it: every kernel runs once before the first cycle.
+    // That takes longer than a batch may.
     CudaEngine engine(std::move(parts));
-    for (const QueryKind kind : {QueryKind::farther, QueryKind::clearance}) {
-        Query query;
-        query.kind = kind;
-        query.r_mm = 1;
-        query.pose.t[0] = 1e3;
-        QueryResult result;
-        engine.run({&query, 1}, {&result, 1});
-    }
+    engine.parts_->deadline_us = std::max(options.deadline_us, kWarmUpUs);
+    warm_up(engine);
+    engine.parts_->deadline_us = options.deadline_us;
     if (engine.fault() != nullptr) {
         fault = std::string("the warm-up batch failed: ") + engine.fault();
         return std::nullopt;

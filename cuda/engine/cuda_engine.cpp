@@ -30,7 +30,8 @@ bool read_result(DeviceResult& from, std::uint32_t sequence, QueryResult& to) no
     const DeviceResult copy = from;
     std::atomic_signal_fence(std::memory_order_seq_cst);  // read again each time
     if (copy.sequence != sequence || copy.check != check_of(copy) ||
-        copy.status > static_cast<std::uint32_t>(QueryStatus::bad_rounding) || copy.proof > 1) {
+        copy.status > static_cast<std::uint32_t>(QueryStatus::too_many_box_rows) ||
+        copy.proof > 1) {
         return false;
     }
     to.status = static_cast<QueryStatus>(copy.status);
@@ -44,9 +45,23 @@ bool read_result(DeviceResult& from, std::uint32_t sequence, QueryResult& to) no
     return true;
 }
 
+/// What a group of a stage came to; as above.
+bool read_result(DeviceGroupResult& from, std::uint32_t sequence, GroupWork& to) noexcept {
+    if (std::atomic_ref<std::uint32_t>(from.sequence).load(std::memory_order_acquire) != sequence) {
+        return false;
+    }
+    const DeviceGroupResult copy = from;
+    std::atomic_signal_fence(std::memory_order_seq_cst);
+    if (copy.sequence != sequence || copy.check != check_of(copy)) {
+        return false;
+    }
+    take_sums(copy.used, copy.lost, to);
+    return true;
+}
+
 /// Polls one result. False: it did not come whole in time.
-bool wait_for(DeviceResult& from, std::uint32_t sequence, Clock::time_point deadline,
-              QueryResult& to) noexcept {
+template <class From, class To>
+bool wait_for(From& from, std::uint32_t sequence, Clock::time_point deadline, To& to) noexcept {
     for (;;) {
         for (int spin = 0; spin < 64; ++spin) {
             if (read_result(from, sequence, to)) {
@@ -59,6 +74,25 @@ bool wait_for(DeviceResult& from, std::uint32_t sequence, Clock::time_point dead
     }
 }
 
+/// The groups of a launch's queries get places of their own, in the order they are met.
+void place_groups(CudaEngine::Parts& parts, std::size_t count,
+                  std::span<const GroupWork> groups) noexcept {
+    parts.groups_here.clear();
+    for (Query& query : std::span(parts.queries, count)) {
+        AXG_ASSERT(query.group < groups.size());
+        std::uint16_t& place = parts.place_of_group[query.group];
+        if (place == kNoGroup) {
+            place = static_cast<std::uint16_t>(parts.groups_here.size());
+            parts.groups_in[place] = sums_of(groups[query.group], parts.sequence);
+            parts.groups_here.push_back(query.group);
+        }
+        query.group = place;
+    }
+    for (const std::uint16_t group : parts.groups_here) {
+        parts.place_of_group[group] = kNoGroup;
+    }
+}
+
 /// The touching pairs of one query into its list, in the order of their ids.
 void fill_list(const TriangleIds* from, std::uint32_t room, const Query& query,
                const QueryResult& result) noexcept {
@@ -68,9 +102,10 @@ void fill_list(const TriangleIds* from, std::uint32_t room, const Query& query,
     std::sort(query.list.begin(), query.list.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
-/// One launch. False: the engine is dead, and no result of it counts.
+/// One launch, in groups unless there are none. False: the engine is dead, and no result of it
+/// counts.
 bool run_batch(CudaEngine::Parts& parts, std::span<const Query> queries,
-               std::span<QueryResult> results) noexcept {
+               std::span<QueryResult> results, std::span<GroupWork> groups) noexcept {
     const Clock::time_point deadline = Clock::now() + std::chrono::microseconds(parts.deadline_us);
     const DeviceLimits& limits = parts.buffers.limits;
     const std::uint32_t sequence = ++parts.sequence;
@@ -79,12 +114,18 @@ bool run_batch(CudaEngine::Parts& parts, std::span<const Query> queries,
         measures = measures || queries[i].kind == QueryKind::clearance;
         parts.queries[i] = queries[i];
     }
-    const bool begins = measures || !parts.has_cycles || parts.begins_cycle;
-    parts.begins_cycle = parts.begins_cycle && measures;  // those are no part of a cycle
-    *parts.head = {sequence, static_cast<std::uint32_t>(queries.size()), begins ? 1U : 0U};
+    const bool is_stage = !groups.empty();
+    parts.groups_here.clear();
+    if (is_stage) {
+        place_groups(parts, queries.size(), groups);
+    }
+    *parts.head = {sequence, static_cast<std::uint32_t>(queries.size()),
+                   static_cast<std::uint32_t>(parts.groups_here.size())};
     std::memset(static_cast<void*>(parts.results), kPoison, queries.size() * sizeof(DeviceResult));
+    std::memset(static_cast<void*>(parts.groups_out), kPoison,
+                parts.groups_here.size() * sizeof(DeviceGroupResult));
     std::atomic_thread_fence(std::memory_order_seq_cst);
-    const BatchGraph& batch = measures ? parts.clearances : parts.proofs;
+    const BatchGraph& batch = is_stage ? parts.stages : measures ? parts.clearances : parts.proofs;
     if (cudaGraphLaunch(batch.exec, parts.partition.stream) != cudaSuccess) {
         parts.give_up("the GPU refused a batch");
         return false;
@@ -100,6 +141,12 @@ bool run_batch(CudaEngine::Parts& parts, std::span<const Query> queries,
         }
         fill_list(parts.listed + i * limits.listed, limits.listed, queries[i], results[i]);
     }
+    for (std::size_t i = 0; i < parts.groups_here.size(); ++i) {
+        if (!wait_for(parts.groups_out[i], sequence, deadline, groups[parts.groups_here[i]])) {
+            parts.give_up("what a group used did not come whole in time");
+            return false;
+        }
+    }
     return true;
 }
 
@@ -113,17 +160,25 @@ CudaEngine::~CudaEngine() {
     if (parts_ == nullptr || parts_->fault != nullptr) {
         return;
     }
-    for (const cuda::BatchGraph& batch : {parts_->proofs, parts_->clearances}) {
+    // What a kernel still writes behind its last result must be there: freeing waits for the
+    // device, not for a partition of it.
+    static_cast<void>(cudaStreamSynchronize(parts_->partition.stream));
+    for (const cuda::BatchGraph& batch : {parts_->proofs, parts_->clearances, parts_->stages}) {
         static_cast<void>(cudaGraphExecDestroy(batch.exec));
         static_cast<void>(cudaGraphDestroy(batch.graph));
     }
-    static_cast<void>(cudaStreamDestroy(parts_->partition.stream));
+    close_partition(parts_->partition);
     static_cast<void>(cudaFree(parts_->device_memory));
     static_cast<void>(cudaFreeHost(parts_->pinned_memory));
 }
 
 void CudaEngine::run(std::span<const Query> queries, std::span<QueryResult> results) noexcept {
-    AXG_ASSERT(queries.size() == results.size());
+    run(queries, results, {});
+}
+
+void CudaEngine::run(std::span<const Query> queries, std::span<QueryResult> results,
+                     std::span<GroupWork> groups) noexcept {
+    AXG_ASSERT(queries.size() == results.size() && groups.size() <= kGroupsMax);
     std::fill(results.begin(), results.end(), QueryResult{});
     if (!rounds_to_nearest()) {  // the poses come from this thread
         std::fill(results.begin(), results.end(), QueryResult{.status = QueryStatus::bad_rounding});
@@ -132,14 +187,18 @@ void CudaEngine::run(std::span<const Query> queries, std::span<QueryResult> resu
     const std::size_t room = parts_->buffers.limits.queries;
     for (std::size_t at = 0; at < queries.size() && parts_->fault == nullptr; at += room) {
         const std::size_t count = std::min(room, queries.size() - at);
-        if (!run_batch(*parts_, queries.subspan(at, count), results.subspan(at, count))) {
+        if (!run_batch(*parts_, queries.subspan(at, count), results.subspan(at, count), groups)) {
             std::fill(results.begin(), results.end(), QueryResult{});
         }
     }
-}
-
-void CudaEngine::begin_cycle() noexcept {
-    parts_->has_cycles = parts_->begins_cycle = true;
+    // A share is spent by all of a group together, in all launches.
+    for (std::size_t i = 0; !groups.empty() && parts_->fault == nullptr && i < results.size();
+         ++i) {
+        const QueryStatus full = first_full(groups[queries[i].group]);
+        if (full != QueryStatus::ok) {
+            results[i] = QueryResult{.status = full};
+        }
+    }
 }
 
 Engine CudaEngine::engine() noexcept {
@@ -147,8 +206,11 @@ Engine CudaEngine::engine() noexcept {
     out.self = this;
     out.run = [](void* self, std::span<const Query> queries,
                  std::span<QueryResult> results) noexcept {
-        static_cast<CudaEngine*>(self)->begin_cycle();
         static_cast<CudaEngine*>(self)->run(queries, results);
+    };
+    out.run_groups = [](void* self, std::span<const Query> queries, std::span<QueryResult> results,
+                        std::span<GroupWork> groups) noexcept {
+        static_cast<CudaEngine*>(self)->run(queries, results, groups);
     };
     out.prefers_batches = true;
     return out;

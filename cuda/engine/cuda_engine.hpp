@@ -25,9 +25,11 @@ inline constexpr const char* kNoCudaInThisBuild =
     "this build has no CUDA engine; build it where nvcc is on the path, or use --engine cpu";
 
 struct CudaOptions {
-    std::uint32_t queries_max = 512;  // of one launch, at most 512; more are run in turn
-    // Lists of a launch with a clearance query, whose time has no bound; others have those of
-    // Capacities::batch. An overflow makes all queries of the launch not_proven.
+    // Of one launch; more are run in turn. A stage's 512 and the known-answer test's, at most 544.
+    std::uint32_t queries_max = 514;
+    // Lists of a launch with a clearance query, whose time has no bound, or with groups, which
+    // their shares bound; others have those of Capacities::batch. An overflow makes all queries of
+    // the launch not_proven.
     std::uint32_t level_pairs = 1U << 16U, leaf_pairs = 1U << 17U;
     std::uint32_t candidates = 4096;      // a query: pairs of triangles that may set a clearance
     std::uint32_t listed = 64;            // a query: touching pairs told by name, at most
@@ -63,13 +65,12 @@ class CudaEngine {
     CudaEngine& operator=(CudaEngine&&) = delete;
     ~CudaEngine();
 
+    /// Each launch has all that `capacities.batch` allows.
     void run(std::span<const Query> queries, std::span<QueryResult> results) noexcept;
-    /// From here to the next call all launches share what `capacities.batch` allows. Before the
-    /// first call each launch has that for itself.
-    void begin_cycle() noexcept;
-    /// As the guard sees it: a call is a stage, and begins a cycle of its own. So each stage has
-    /// all that `capacities.batch` allows, however many launches its queries take, and what an
-    /// earlier stage used changes nothing.
+    /// As `Engine::run_groups`: what shares allow, and no capacity.
+    void run(std::span<const Query> queries, std::span<QueryResult> results,
+             std::span<GroupWork> groups) noexcept;
+    /// As the guard sees it: a stage is a call.
     [[nodiscard]] Engine engine() noexcept;
 
     /// Why the engine gave up; null while it lives. Nothing revives it.

@@ -8,6 +8,7 @@
 #include "core/base/host_device.hpp"
 #include "core/base/limits.hpp"
 #include "core/collision/engine.hpp"
+#include "core/collision/group_work.hpp"
 #include "core/collision/tree.hpp"
 
 namespace axg::cuda {
@@ -16,6 +17,7 @@ inline constexpr std::uint32_t kNoQuery = 0xffffffffU;
 // Tree levels of pairs of nodes: each step opens at least one of two nodes, and both while both are
 // inner nodes.
 inline constexpr std::uint32_t kTreeLevelsMax = kTreeDepthMax + 1;
+static_assert(kTreeLevelsMax <= kLevelsOfLoss);
 
 /// One body's tree in the device's memory.
 struct DeviceTree {
@@ -61,15 +63,15 @@ struct Tally {
     unsigned long long nearest;                    // ids of the pair with that value
 };
 
-/// What the queries of a batch may use together. The batches of one cycle share what the first
-/// of them starts with. The first level has a place for every query besides.
+/// What the queries of a batch may use together. The first level has a place for every query
+/// besides.
 struct BatchBudget {
     std::uint32_t level_pairs, leaf_pairs, box_rows, triangle_pairs, rechecks;
 };
 
 /// Counters of one batch. A kernel that did not run leaves `handled` behind `listed`.
 struct Counters {
-    std::uint32_t sequence, count;
+    std::uint32_t sequence, count, groups;
     BatchBudget budget;
     std::uint32_t listed[kTreeLevelsMax], handled[kTreeLevelsMax];  // pairs of nodes, by tree level
     std::uint32_t leaf_listed, leaf_handled;
@@ -98,13 +100,13 @@ AXG_HD unsigned long long sum_share(std::uint32_t place, const std::uint32_t (&w
 
 inline constexpr std::uint32_t kNoLimit = 0xffffffffU;
 
-/// A thread a query, where all of a batch are looked at together.
-inline constexpr std::uint32_t kBatchQueriesMax = 512;
+/// Where all of a batch are looked at together: a stage's, the known-answer test's, whole warps.
+inline constexpr std::uint32_t kBatchQueriesMax = 544;
 
 /// Pinned, written by the host before a batch.
 struct BatchHead {
     std::uint32_t sequence = 0, count = 0;
-    std::uint32_t begins_cycle = 1;  // 0: what the batches before it used is gone
+    std::uint32_t groups = 0;  // of a stage
 };
 
 /// One result as the device writes it.
@@ -118,6 +120,16 @@ struct alignas(16) DeviceResult {
 static_assert(sizeof(DeviceResult) == 48);
 
 /// FNV-1a over words: a word that was not written, or not all of it, is found out.
+template <unsigned kCount>
+AXG_HD std::uint32_t hash_of(const std::uint32_t (&words)[kCount]) noexcept {
+    std::uint32_t hash = 0x811c9dc5U;
+    for (const std::uint32_t word : words) {
+        hash = (hash ^ word) * 0x01000193U;
+        hash ^= hash >> 15U;
+    }
+    return hash;
+}
+
 AXG_HD std::uint32_t check_of(const DeviceResult& a) noexcept {
     const std::uint64_t clearance = __builtin_bit_cast(std::uint64_t, a.clearance_mm);
     const std::uint32_t words[] = {a.sequence,
@@ -131,12 +143,20 @@ AXG_HD std::uint32_t check_of(const DeviceResult& a) noexcept {
                                    static_cast<std::uint32_t>(clearance >> 32U),
                                    a.nearest_a,
                                    a.nearest_b};
-    std::uint32_t hash = 0x811c9dc5U;
-    for (const std::uint32_t word : words) {
-        hash = (hash ^ word) * 0x01000193U;
-        hash ^= hash >> 15U;
-    }
-    return hash;
+    return hash_of(words);
+}
+
+/// What a group of a stage came to, as the device writes it.
+struct alignas(16) DeviceGroupResult {
+    std::uint32_t sequence, check;
+    std::uint32_t lost, used[kWorkListCount];
+};
+static_assert(sizeof(DeviceGroupResult) == 32);
+
+AXG_HD std::uint32_t check_of(const DeviceGroupResult& a) noexcept {
+    const std::uint32_t words[] = {a.sequence, a.lost,    a.used[0], a.used[1],
+                                   a.used[2],  a.used[3], a.used[4]};
+    return hash_of(words);
 }
 
 /// Capacities: a query's own quotas, and the lists all queries of a batch share.
@@ -144,9 +164,10 @@ struct DeviceLimits {
     std::uint32_t queries = 0;                                       // of one batch
     std::uint32_t node_pairs = 0, triangle_pairs = 0, rechecks = 0;  // a query
     std::uint32_t candidates = 0;                                    // a query, clearance
-    std::uint32_t level_pairs = 0, leaf_pairs = 0, box_rows = 0;     // a cycle, or a batch
+    std::uint32_t level_pairs = 0, leaf_pairs = 0, box_rows = 0;     // a batch
     std::uint32_t batch_triangle_pairs = 0, batch_rechecks = 0;
-    bool measures = false;          // a batch with a clearance query: no part of a cycle
+    bool measures = false;          // a batch with a clearance query
+    bool is_stage = false;          // queries in groups: what each may use, and nothing else
     std::uint32_t listed = 0;       // a query: touching pairs told by name
     std::uint32_t tree_levels = 0;  // of pairs of nodes to open
     std::uint32_t meshes = 0;
@@ -161,13 +182,15 @@ struct DeviceBuffers {
     const BatchHead* head = nullptr;
     const Query* queries = nullptr;
     DeviceResult* results = nullptr;
-    TriangleIds* listed = nullptr;  // [queries][listed], touching pairs
+    TriangleIds* listed = nullptr;            // [queries][listed], touching pairs
+    const GroupSums* groups_in = nullptr;     // [queries]
+    DeviceGroupResult* groups_out = nullptr;  // [queries]
     // Device memory.
     const DeviceTree* trees = nullptr;
     PreparedQuery* prepared = nullptr;
     Tally* tallies = nullptr;
     Counters* counters = nullptr;
-    BatchBudget* cycle_budget = nullptr;  // what is left for the next batch of the cycle
+    GroupSums* groups = nullptr;  // [queries]
     TreeSums sums;
     PairEntry* tree_level[2] = {nullptr, nullptr};
     PairEntry* leaves = nullptr;

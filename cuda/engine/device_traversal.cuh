@@ -32,6 +32,7 @@ struct PreparedQuery {
     QueryKind kind;
     bool is_float_only;
     bool wants_list;
+    std::uint16_t group;  // of a stage
 };
 
 inline constexpr unsigned kWarp = 32;
@@ -178,14 +179,41 @@ __device__ __forceinline__ bool is_over(const Tally& tally, std::uint32_t tree_l
     return sum > node_pairs;
 }
 
+/// Adds to a list of a group. Whether its share holds that.
+__device__ __forceinline__ bool charge(GroupSums& group, WorkListPlace list, std::uint32_t more,
+                                       std::uint32_t loss) {
+    const bool fits = atomicAdd(&group.used[list], more) + more <= group.share[list];
+    if (!fits) {
+        atomicMin(&group.lost, loss);
+    }
+    return fits;
+}
+
+/// Whether a query's group was lost at `loss` or before it; false in a batch without groups.
+__device__ __forceinline__ bool is_lost(const DeviceBuffers& b, const PreparedQuery& q,
+                                        std::uint32_t loss) {
+    return b.limits.is_stage &&
+           *static_cast<const volatile std::uint32_t*>(&b.groups[q.group].lost) <= loss;
+}
+
+/// Of all lanes of a warp.
+__device__ __forceinline__ std::uint32_t warp_sum(std::uint32_t value) {
+    for (unsigned step = kWarp / 2; step != 0; step /= 2) {
+        value += __shfl_xor_sync(kAllLanes, value, step);
+    }
+    return value;
+}
+
 /// Rechecks that a query wants: none where it is not proven whatever they say. Its pairs of
 /// triangles are all counted and tested by then, so the result does not depend on the order of
 /// work.
-__device__ __forceinline__ std::uint32_t rechecks_wanted(const Tally& tally,
-                                                         const DeviceLimits& limits) {
-    const bool is_lost =
-        tally.triangle_pairs > limits.triangle_pairs || tally.rechecks > limits.rechecks;
-    return is_lost || tally.near != 0 ? 0 : tally.rechecks;
+__device__ __forceinline__ std::uint32_t rechecks_wanted(const DeviceBuffers& b,
+                                                         std::uint32_t query) {
+    const Tally& tally = b.tallies[query];
+    const bool is_none = tally.triangle_pairs > b.limits.triangle_pairs ||
+                         tally.rechecks > b.limits.rechecks || tally.near != 0 ||
+                         tally.refused != 0 || is_lost(b, b.prepared[query], kLossOfRechecks);
+    return is_none ? 0 : tally.rechecks;
 }
 
 __device__ __forceinline__ void lower(unsigned long long& to, double value) {

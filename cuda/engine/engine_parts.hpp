@@ -30,6 +30,12 @@ struct Partition {
 
 /// A stream on `wanted` multiprocessors (0: all). False: `fault` says why.
 [[nodiscard]] bool make_partition(unsigned wanted, Partition& out, std::string& fault);
+/// Its stream and its context. Precondition: nothing runs in it any more.
+void close_partition(const Partition& partition) noexcept;
+
+/// Of a call; Query::group has 16 bits.
+inline constexpr std::uint32_t kGroupsMax = 1U << 16U;
+inline constexpr std::uint16_t kNoGroup = 0xffffU;
 
 /// One batch as a graph. Empty nodes mean that it was not captured.
 struct BatchGraph {
@@ -50,15 +56,19 @@ struct CudaEngine::Parts {
     std::byte* pinned_memory = nullptr;
     cuda::DeviceBuffers buffers;          // addresses as the device sees them
     cuda::DeviceLimits clearance_limits;  // of a batch with a clearance query
+    cuda::DeviceLimits stage_limits;      // of one whose queries are in groups
     // The same pinned memory as the host sees it.
     cuda::BatchHead* head = nullptr;
     Query* queries = nullptr;
     cuda::DeviceResult* results = nullptr;
     TriangleIds* listed = nullptr;
-    cuda::BatchGraph proofs, clearances;  // without and with the kernels that clearance needs
-    std::uint32_t sequence = 0;           // of the last batch
-    bool has_cycles = false;              // someone says when one begins
-    bool begins_cycle = true;             // the next batch is the first of its cycle
+    GroupSums* groups_in = nullptr;
+    cuda::DeviceGroupResult* groups_out = nullptr;
+    // Without and with the kernels that clearance needs; and in groups.
+    cuda::BatchGraph proofs, clearances, stages;
+    std::uint32_t sequence = 0;  // of the last batch
+    // Groups of a launch: which of the call's, and which of the launch's each of those is.
+    std::vector<std::uint16_t> groups_here, place_of_group;
     const char* fault = nullptr;
 
     /// CudaEngine::create over trees instead of meshes.

@@ -25,6 +25,29 @@ struct Opened {
     const TreeNode& b;
 };
 
+/// Charges a warp's pairs to their group: `all` lanes', of which this one's are `leaves` or not.
+/// Returns those that its share holds: all pairs of leaves or none, and likewise of the others.
+__device__ std::uint32_t charge_pairs(const DeviceBuffers& buffers, const PreparedQuery& q,
+                                      const Opened& o, bool leaves, std::uint32_t all,
+                                      std::uint32_t child_a, std::uint32_t child_b) {
+    GroupSums& group = buffers.groups[q.group];
+    const std::uint32_t leaf_bits = ballot(leaves), other_bits = all & ~leaf_bits;
+    const std::uint32_t charged =
+        leaf_bits == 0
+            ? 0
+            : warp_sum(leaves ? charged_leaves(q.a.nodes[child_a], q.b.nodes[child_b]) : 0);
+    // A lane each, so that neither waits for the other.
+    bool fits = true;
+    if (lane_of_thread() == 0 && leaf_bits != 0) {
+        fits = charge(group, kLeafPairsPlace, charged, loss_of_leaves(o.tree_level));
+    } else if (lane_of_thread() == 1 && other_bits != 0) {
+        fits = charge(group, kNodePairsPlace, static_cast<std::uint32_t>(__popc(other_bits)),
+                      loss_of_nodes(o.tree_level));
+    }
+    const std::uint32_t fitting = ballot(fits);
+    return ((fitting & 1U) != 0 ? leaf_bits : 0) | ((fitting & 2U) != 0 ? other_bits : 0);
+}
+
 /// Puts the wanted lanes' pairs where they belong: two leaves to the leaves, others one level on.
 /// Called by whole warps.
 __device__ void append(const DeviceBuffers& buffers, const PreparedQuery& q, const Opened& o,
@@ -34,7 +57,10 @@ __device__ void append(const DeviceBuffers& buffers, const PreparedQuery& q, con
         return;
     }
     const bool leaves = wanted && is_leaf(q.a.nodes[child_a]) && is_leaf(q.b.nodes[child_b]);
-    const std::uint32_t leaf_bits = ballot(leaves), other_bits = all & ~leaf_bits;
+    const std::uint32_t found = ballot(leaves);
+    const std::uint32_t fitting =
+        buffers.limits.is_stage ? charge_pairs(buffers, q, o, leaves, all, child_a, child_b) : all;
+    const std::uint32_t leaf_bits = found & fitting, other_bits = all & ~found & fitting;
     std::uint32_t leaf_at = 0, other_at = 0;
     if (lane_of_thread() == 0) {
         atomicAdd(&buffers.tallies[o.at.query].pairs_at[o.tree_level + 1],
@@ -52,10 +78,11 @@ __device__ void append(const DeviceBuffers& buffers, const PreparedQuery& q, con
     other_at = __shfl_sync(kAllLanes, other_at, 0) + rank_in(other_bits);
     const PairEntry entry{o.at.query, child_a, child_b, low_mm};
     const BatchBudget& budget = buffers.counters->budget;
-    if (leaves && leaf_at < budget.leaf_pairs) {
+    const bool fits = (fitting >> lane_of_thread() & 1U) != 0;
+    if (leaves && fits && leaf_at < budget.leaf_pairs) {
         buffers.leaves[leaf_at] = entry;
     }
-    if (wanted && !leaves && other_at < budget.level_pairs) {
+    if (wanted && !leaves && fits && other_at < budget.level_pairs) {
         buffers.tree_level[(o.tree_level + 1) % 2][other_at] = entry;
     }
 }
@@ -77,6 +104,18 @@ __device__ bool is_near_child(const PreparedQuery& q, const TreeNode& child_a, c
 /// Adds to the batch's rows of boxes; the first thread gets what they come to.
 __device__ std::uint32_t count_rows(const DeviceBuffers& buffers, std::uint32_t more) {
     return threadIdx.x == 0 && more != 0 ? atomicAdd(&buffers.counters->box_rows, more) + more : 0;
+}
+
+/// Charges the rows of an opened pair to its group: the children of a in `bits`. Called by whole
+/// warps.
+__device__ void charge_rows(const DeviceBuffers& buffers, const PreparedQuery& q, const Opened& o,
+                            std::uint32_t bits) {
+    const unsigned lane = lane_of_thread();
+    const std::uint32_t charged =
+        warp_sum((bits >> lane & 1U) != 0 ? charged_rows(q.a.nodes[o.a.first_child + lane]) : 0);
+    if (lane == 0 && bits != 0) {
+        charge(buffers.groups[q.group], kBoxRowsPlace, charged, loss_of_rows(o.tree_level));
+    }
 }
 
 /// Returns the batch's rows of boxes so far, to the first thread.
@@ -109,6 +148,9 @@ __device__ std::uint32_t open_both(const DeviceBuffers& buffers, const PreparedQ
         const bool near = is_near_child(q, q.a.nodes[child_a], moved_box(q.c.a_in_b, own.c, own.h),
                                         box, (bits_b >> lane & 1U) != 0);
         append(buffers, q, o, near, child_a, o.b.first_child + lane, 0);
+    }
+    if (buffers.limits.is_stage && warp == 0) {
+        charge_rows(buffers, q, o, bits_b == 0 ? 0 : shared.bits_a);
     }
     return rows;
 }
@@ -183,12 +225,15 @@ __device__ std::uint32_t open(const DeviceBuffers& buffers, const PairEntry& at,
     const bool leaf_a = is_leaf(o.a), leaf_b = is_leaf(o.b),
                measures = q.kind == QueryKind::clearance;
     const double bound = tally.bound_mm;
-    if (is_over(tally, tree_level, buffers.limits.node_pairs) ||
+    if (is_lost(buffers, q, loss_of_rows(tree_level)) ||
+        is_over(tally, tree_level, buffers.limits.node_pairs) ||
         (measures && !(at.low_mm < bound))) {
         return 0;
     }
     if (leaf_a && leaf_b) {  // two roots: pairs found further down go to the leaves at once
-        if (threadIdx.x == 0) {
+        if (threadIdx.x == 0 && (!buffers.limits.is_stage ||
+                                 charge(buffers.groups[q.group], kLeafPairsPlace,
+                                        charged_leaves(o.a, o.b), loss_of_leaves(tree_level)))) {
             const std::uint32_t place = atomicAdd(&buffers.counters->leaf_listed, 1U);
             if (place < buffers.counters->budget.leaf_pairs) {
                 buffers.leaves[place] = at;

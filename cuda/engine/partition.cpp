@@ -81,4 +81,12 @@ bool make_partition(unsigned wanted, Partition& out, std::string& fault) {
     return true;
 }
 
+void close_partition(const Partition& partition) noexcept {
+    static_cast<void>(cudaStreamDestroy(partition.stream));
+    decltype(&cuGreenCtxDestroy) destroy = nullptr;
+    if (partition.green != nullptr && find_entry("cuGreenCtxDestroy", destroy)) {
+        static_cast<void>(destroy(static_cast<CUgreenCtx>(partition.green)));
+    }
+}
+
 }  // namespace axg::cuda

@@ -14,6 +14,10 @@ static_assert(sizeof(Query) % sizeof(uint4) == 0);
 
 /// Whether the engine can run it at all; if so, `prepared` holds what it takes.
 __device__ bool prepare(const DeviceBuffers& b, const Query& q, PreparedQuery& prepared) {
+    prepared.group = q.group;
+    if (b.limits.is_stage && q.kind == QueryKind::clearance) {
+        return false;  // its work is ordered by what was found
+    }
     if (q.mesh_a >= b.limits.meshes || q.mesh_b >= b.limits.meshes || !usable(q)) {
         return false;
     }
@@ -69,6 +73,17 @@ __device__ void sum_trees(const TreeSums& sums, std::uint32_t block, std::uint32
     }
 }
 
+/// Shares of a stage's groups, from pinned memory.
+__device__ void copy_groups(const DeviceBuffers& b) {
+    constexpr std::uint32_t kWords = sizeof(GroupSums) / sizeof(uint4);
+    const std::uint32_t count = min(b.head->groups, b.limits.queries) * kWords;
+    const uint4* const from = reinterpret_cast<const uint4*>(b.groups_in);
+    uint4* const to = reinterpret_cast<uint4*>(b.groups);
+    for (std::uint32_t i = threadIdx.x; i < count; i += kThreads) {
+        to[i] = from[i];
+    }
+}
+
 __global__ void __launch_bounds__(kThreads, 8)
     prepare_queries_kernel(const __grid_constant__ DeviceBuffers b) {
     wait_for_kernel_before();
@@ -76,6 +91,10 @@ __global__ void __launch_bounds__(kThreads, 8)
     constexpr unsigned kWords = kThreads * sizeof(Query) / sizeof(uint4);
     __shared__ uint4 words[kWords];
     const std::uint32_t query_blocks = (b.limits.queries + kThreads - 1) / kThreads;
+    if (blockIdx.x == query_blocks + kSumBlocks) {
+        copy_groups(b);
+        return;
+    }
     if (blockIdx.x >= query_blocks) {
         sum_trees(b.sums, blockIdx.x - query_blocks, b.head->sequence);
         return;
@@ -108,11 +127,9 @@ __global__ void __launch_bounds__(kThreads, 8)
         Counters counters{};
         counters.sequence = sequence;
         counters.count = count;
+        counters.groups = head.groups;
         counters.budget = {limits.level_pairs, limits.leaf_pairs, limits.box_rows,
                            limits.batch_triangle_pairs, limits.batch_rechecks};
-        if (!limits.measures && head.begins_cycle == 0) {
-            counters.budget = *b.cycle_budget;
-        }
         counters.listed[0] = count;
         *b.counters = counters;
     }
@@ -125,7 +142,8 @@ std::size_t prepared_query_size_bytes() noexcept {
 }
 
 cudaError_t launch_prepare_queries(const DeviceBuffers& buffers, const Launch& launch) noexcept {
-    const unsigned blocks = (buffers.limits.queries + kThreads - 1) / kThreads + kSumBlocks;
+    const unsigned blocks = (buffers.limits.queries + kThreads - 1) / kThreads + kSumBlocks +
+                            (buffers.limits.is_stage ? 1U : 0U);
     return launch_kernel(prepare_queries_kernel, blocks, kThreads, launch, buffers);
 }
 

@@ -59,7 +59,7 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
     __shared__ PairVectors vectors[kWarps];
     deal(
         b.counters->count, b.counters->budget.rechecks, counts,
-        [&b](std::uint32_t query) { return rechecks_wanted(b.tallies[query], b.limits); },
+        [&b](std::uint32_t query) { return rechecks_wanted(b, query); },
         [&b](std::uint32_t query, bool fits) {
             b.tallies[query].recheck_budget = fits ? kBudgetGiven : kBudgetRefused;
         },

@@ -103,17 +103,23 @@ __device__ std::uint32_t clip(const PreparedQuery& q, const Leaves& l, const Cli
     return count;
 }
 
-/// Counts what was found. Whether it may be tested: neither the query is lost, nor the batch.
-__device__ bool fits_budget(const DeviceBuffers& buffers, std::uint32_t query,
-                            std::uint32_t count) {
+/// Counts what was found. Whether it may be tested: neither the query is lost, nor its group, nor
+/// the batch.
+__device__ bool fits_budget(const DeviceBuffers& buffers, std::uint32_t query, std::uint32_t count,
+                            std::uint32_t group) {
     std::uint32_t before = 0;
+    bool fits = true;
     if (lane_of_thread() == 0) {
         before = atomicAdd(&buffers.tallies[query].triangle_pairs, count);
     } else if (lane_of_thread() == 1) {
         before = atomicAdd(&buffers.counters->triangle_pairs, count);
+    } else if (lane_of_thread() == 2 && buffers.limits.is_stage) {
+        fits = charge(buffers.groups[group], kTrianglePairsPlace, charged_pairs(count),
+                      kLossOfTriangles);
     }
     const DeviceLimits& limits = buffers.limits;
-    return __shfl_sync(kAllLanes, before, 0) + count <= limits.triangle_pairs &&
+    return ballot(!fits) == 0 &&
+           __shfl_sync(kAllLanes, before, 0) + count <= limits.triangle_pairs &&
            __shfl_sync(kAllLanes, before, 1) + count <= buffers.counters->budget.triangle_pairs;
 }
 
@@ -126,12 +132,15 @@ __device__ std::uint32_t gather(const DeviceBuffers& buffers, Tile& tile) {
     const Leaves l{a, q.b.nodes[tile.at.b], {own.c[0], own.c[1], own.c[2]}};
     const ClippedLeaf clipped = move_leaves(q, l, tile);
     std::uint32_t rows = 0;
-    if (lane_of_thread() == 0 && clipped.bits_b != 0) {
-        const auto more = static_cast<std::uint32_t>(__popc(clipped.bits_b));
+    const auto more = static_cast<std::uint32_t>(__popc(clipped.bits_b));
+    if (lane_of_thread() == 0 && more != 0) {
         rows = atomicAdd(&buffers.counters->box_rows, more) + more;
+    } else if (lane_of_thread() == 1 && more != 0 && buffers.limits.is_stage) {
+        charge(buffers.groups[q.group], kBoxRowsPlace, more, kLossOfClipping);
     }
     const std::uint32_t count = clip(q, l, clipped, tile);
-    if (count != 0 && fits_budget(buffers, tile.at.query, count) && lane_of_thread() == 0) {
+    if (count != 0 && fits_budget(buffers, tile.at.query, count, q.group) &&
+        lane_of_thread() == 0) {
         tile.count = count;
     }
     return rows;
@@ -156,7 +165,13 @@ __device__ void test(const DeviceBuffers& buffers, const Tile& tile, unsigned i)
     const bool is_near =
         again.c.has_margin &&
         sat::certified_within(sat::scaled_pair(v.a, v.b, again.c.d32), edges_square, again.near_mm);
-    if ((is_near || again.is_float_only) && again.kind == QueryKind::farther) {
+    const bool is_farther = again.kind == QueryKind::farther;
+    if (buffers.limits.is_stage && !(again.is_float_only && is_farther)) {
+        // Also one that is certified within the margin: what the CPU tests again, up to the first
+        // that touches, is never more.
+        charge(buffers.groups[again.group], kRechecksPlace, 1, kLossOfRechecks);
+    }
+    if ((is_near || again.is_float_only) && is_farther) {
         // Settled, whatever else is found; that all of this kernel's pairs are counted before
         // anyone looks keeps the work independent of the order.
         atomicOr(&buffers.tallies[tile.at.query].near, 1U);
@@ -171,6 +186,8 @@ __device__ void test(const DeviceBuffers& buffers, const Tile& tile, unsigned i)
                                         static_cast<std::uint8_t>(place_b),
                                         static_cast<std::uint16_t>(is_near ? 1 : 0),
                                         0};
+    } else if (buffers.limits.is_stage) {
+        atomicMin(&buffers.groups[again.group].lost, kLossOfRechecks);
     }
 }
 
@@ -206,7 +223,8 @@ __device__ bool take(const DeviceBuffers& b, std::uint32_t i, std::uint32_t coun
         ++tile.handled;
     }
     __syncwarp();
-    return !is_over(b.tallies[at.query], kTreeLevelsMax - 1, b.limits.node_pairs);
+    return !is_lost(b, b.prepared[at.query], kLossOfClipping) &&
+           !is_over(b.tallies[at.query], kTreeLevelsMax - 1, b.limits.node_pairs);
 }
 
 __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)

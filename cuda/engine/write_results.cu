@@ -9,7 +9,7 @@
 namespace axg::cuda {
 namespace {
 
-constexpr unsigned kThreads = kBatchQueriesMax;
+constexpr unsigned kThreads = 512;
 
 /// Whether every pair of nodes that was listed was looked at, in trees that are as they were; and
 /// whether no budget was left for one, or for a pair of triangles.
@@ -37,9 +37,11 @@ __device__ BatchState state_of(const DeviceBuffers& b) {
     return state;
 }
 
-__device__ bool has_seen_all(const Tally& tally, const DeviceLimits& limits, QueryKind kind) {
+__device__ bool has_seen_all(const DeviceBuffers& b, std::uint32_t index, QueryKind kind) {
+    const Tally& tally = b.tallies[index];
+    const DeviceLimits& limits = b.limits;
     if (kind != QueryKind::clearance) {
-        const std::uint32_t wanted = rechecks_wanted(tally, limits);
+        const std::uint32_t wanted = rechecks_wanted(b, index);
         return wanted == 0 || tally.recheck_budget == kBudgetRefused ||
                (tally.recheck_budget == kBudgetGiven && tally.recheck_done == wanted);
     }
@@ -48,9 +50,14 @@ __device__ bool has_seen_all(const Tally& tally, const DeviceLimits& limits, Que
            tally.candidates_done[2] == candidates;
 }
 
-__device__ QueryStatus status_of(const Tally& tally, const DeviceLimits& limits,
-                                 const BatchState& state, QueryKind kind) {
-    if (!state.is_complete || !has_seen_all(tally, limits, kind)) {
+__device__ QueryStatus status_of(const DeviceBuffers& b, std::uint32_t index,
+                                 const BatchState& state) {
+    const Tally& tally = b.tallies[index];
+    const DeviceLimits& limits = b.limits;
+    const PreparedQuery& q = b.prepared[index];
+    const QueryKind kind = q.kind;
+    const bool is_stale = limits.is_stage && b.groups[q.group].sequence != tally.sequence;
+    if (!state.is_complete || is_stale || !has_seen_all(b, index, kind)) {
         return QueryStatus::not_run;
     }
     if (tally.refused != 0) {
@@ -61,6 +68,9 @@ __device__ QueryStatus status_of(const Tally& tally, const DeviceLimits& limits,
     }
     if (state.is_over_triangles || tally.triangle_pairs > limits.triangle_pairs) {
         return QueryStatus::too_many_triangle_pairs;
+    }
+    if (is_lost(b, q, kLossOfRechecks)) {
+        return status_of_loss(b.groups[q.group].lost);
     }
     if (tally.near != 0) {
         return QueryStatus::ok;
@@ -90,7 +100,7 @@ __device__ DeviceResult result_of(const DeviceBuffers& b, std::uint32_t index,
     const PreparedQuery& q = b.prepared[index];
     DeviceResult result{};
     result.sequence = tally.sequence;
-    const QueryStatus status = status_of(tally, b.limits, state, q.kind);
+    const QueryStatus status = status_of(b, index, state);
     result.status = static_cast<std::uint32_t>(status);
     if (tally.refused == 0) {
         for (const std::uint32_t pairs : tally.pairs_at) {
@@ -110,49 +120,35 @@ __device__ DeviceResult result_of(const DeviceBuffers& b, std::uint32_t index,
     return result;
 }
 
-/// What is left of a budget.
-__device__ std::uint32_t left_of(std::uint32_t budget, std::uint32_t used) {
-    return budget - min(budget, used);
-}
-
-/// What the batch leaves for the next one of its cycle. `rechecks`: that its budget held.
-__device__ void leave_budget(const DeviceBuffers& b, std::uint32_t rechecks) {
-    const Counters& counters = *b.counters;
-    const BatchBudget& budget = counters.budget;
-    std::uint32_t level_pairs = 0;
-    for (std::uint32_t i = 1; i < kTreeLevelsMax; ++i) {
-        level_pairs = max(level_pairs, counters.listed[i]);
+/// What a group of a stage came to.
+__device__ DeviceGroupResult group_result_of(const GroupSums& group) {
+    DeviceGroupResult result{};
+    result.sequence = group.sequence;
+    result.lost = group.lost;
+    for (unsigned i = 0; i < kWorkListCount; ++i) {
+        result.used[i] = group.used[i];
     }
-    *b.cycle_budget = {left_of(budget.level_pairs, level_pairs),
-                       left_of(budget.leaf_pairs, counters.leaf_listed),
-                       left_of(budget.box_rows, counters.box_rows),
-                       left_of(budget.triangle_pairs, counters.triangle_pairs),
-                       left_of(budget.rechecks, rechecks)};
+    result.check = check_of(result);
+    return result;
 }
 
 __global__ void __launch_bounds__(kThreads)
     write_results_kernel(const __grid_constant__ DeviceBuffers b) {
     wait_for_kernel_before();
-    __shared__ std::uint32_t rechecks;
     const Counters& counters = *b.counters;
-    if (threadIdx.x == 0) {
-        rechecks = 0;
-    }
-    __syncthreads();
     const BatchState state = state_of(b);
     for (std::uint32_t i = threadIdx.x; i < counters.count; i += kThreads) {
         b.results[i] = result_of(b, i, state);
-        const Tally& tally = b.tallies[i];
-        if (tally.recheck_budget == kBudgetGiven) {
-            atomicAdd(&rechecks, rechecks_wanted(tally, b.limits));
+    }
+    if (b.limits.is_stage) {
+        const std::uint32_t groups = min(counters.groups, b.limits.queries);
+        for (std::uint32_t i = threadIdx.x; i < groups; i += kThreads) {
+            b.groups_out[i] = group_result_of(b.groups[i]);
         }
     }
     __syncthreads();
     if (threadIdx.x == 0) {
         b.sums.found[(counters.sequence + 1) % 2] = 0;
-        if (!b.limits.measures) {
-            leave_budget(b, rechecks);
-        }
     }
 }
 

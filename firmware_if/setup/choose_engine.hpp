@@ -31,10 +31,13 @@ struct ChosenEngine {
     [[nodiscard]] Engine engine(CpuEngine& cpu) { return gpu ? gpu->engine() : cpu.engine(); }
 };
 
-/// What a cycle may query on a GPU, at most. Each call may fill all lists of the engine.
+/// What a cycle may query on a GPU, at most. Without a plan a call may fill all lists of the
+/// engine.
 struct CycleDemand {
     std::uint32_t calls = 1;                  // stages, and where a jog begins those of its ladders
     std::uint32_t launches = 1, queries = 1;  // of a call
+    std::optional<CyclePlan> plan{};  // stoppable: each stage fills the lists that it has there
+    std::uint32_t tasks = 0;          // queries of the first stage
     TimeLimits times{};
 };
 [[nodiscard]] CycleDemand cycle_demand(const Machine& machine, bool is_stoppable) noexcept;

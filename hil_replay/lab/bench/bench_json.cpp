@@ -25,7 +25,6 @@ Json json_of(const CyclePercentiles& us) {
 Json describe_line(const WorstCaseMeasurement::Line& line) {
     return {{"layout", line.layout},
             {"condition", line.condition},
-            {"split", line.split},
             {"cycles", line.cycle_us.size()},
             {"cycle_us", json_of(percentiles_of(line.cycle_us))}};
 }

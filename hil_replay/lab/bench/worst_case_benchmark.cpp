@@ -20,16 +20,15 @@ void print(const WorstCaseMeasurement& m, const BatchCapacities& batch, std::FIL
     fmt::print(to,
                "{}, {} of {} multiprocessors; {} queries in {} launches, {} levels\nlists of a "
                "batch: {} node pairs per level, {} leaf pairs, {} box rows, {} triangle pairs, {} "
-               "rechecks\n\n{:<12} {:<14} {:<10} {:>9} {:>9} {:>9} {:>9} {:>9}\n",
+               "rechecks\n\n{:<12} {:<14} {:>9} {:>9} {:>9} {:>9} {:>9}\n",
                m.device.name, m.device.multiprocessors_used, m.device.multiprocessors,
                m.cycle.queries, m.cycle.launches, m.cycle.tree_levels, batch.level_pairs,
                batch.leaf_pairs, batch.box_rows, batch.triangle_pairs, batch.rechecks, "layout",
-               "beside it", "split", "p50 us", "p99", "p99.9", "max", "3/N");
+               "beside it", "p50 us", "p99", "p99.9", "max", "3/N");
     for (const WorstCaseMeasurement::Line& line : m.lines) {
         const CyclePercentiles us = percentiles_of(line.cycle_us);
-        fmt::print(to, "{:<12} {:<14} {:<10} {:>9.1f} {:>9.1f} {:>9.1f} {:>9.1f} {:>9.1e}\n",
-                   line.layout, line.condition, line.split, us.p50_us, us.p99_us, us.p999_us,
-                   us.max_us, us.three_over_n);
+        fmt::print(to, "{:<12} {:<14} {:>9.1f} {:>9.1f} {:>9.1f} {:>9.1f} {:>9.1e}\n", line.layout,
+                   line.condition, us.p50_us, us.p99_us, us.p999_us, us.max_us, us.three_over_n);
     }
     fmt::print(to, "slowest of all: {:.1f} us\n", m.us_max);
 }

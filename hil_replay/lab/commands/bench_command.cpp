@@ -111,7 +111,7 @@ void add_worst_case_options(const Command& command, BenchOptions& options) {
         .between(1U, kTreeDepthMax);
     command
         .add_option("--launches", options.launches,
-                    "with --worst-case: launches per cycle, which share the lists")
+                    "with --worst-case: launches per cycle, each with all lists full")
         .between(1U, 64U)
         .shows_default();
 }

@@ -67,54 +67,18 @@ TEST(CudaWorstCase, EveryListOfABatchEndsWhereItSays) {
     }
 }
 
-// The launches of a cycle share the lists: to the last place, and not one further.
-TEST(CudaWorstCase, TheLaunchesOfACycleShareItsLists) {
-    const Capacities usual;
-    WorstCaseBatch worst_case;
-    ASSERT_EQ(
-        make_worst_case_batch(usual, kQueries, kTreeLevels, WorstCaseLayout::even, worst_case), "");
-    AXG_WORST_CASE_ENGINE_OR_SKIP(gpu, worst_case, usual);
-    const std::span<const Query> all = worst_case.queries;
-    std::vector<QueryResult> results(kQueries);
-    const auto lost_of = [&](std::size_t first, std::size_t count) {
-        const std::span<QueryResult> of{results.data(), count};
-        gpu.run(all.subspan(first, count), of);
-        EXPECT_EQ(gpu.fault(), nullptr);
-        for (const QueryResult& result : of) {
-            EXPECT_FALSE(test::is_overflow(result) && result.proof == Proof::far);
-        }
-        return std::count_if(of.begin(), of.end(), test::is_overflow);
-    };
-    EXPECT_EQ(lost_of(0, kQueries), 0);
-    EXPECT_EQ(lost_of(0, kQueries), 0) << "nobody said that a cycle began: each for itself";
-    for (int cycle = 0; cycle < 2; ++cycle) {
-        gpu.begin_cycle();
-        EXPECT_EQ(lost_of(0, 100), 0);
-        EXPECT_EQ(lost_of(100, 300), 0);
-        EXPECT_EQ(lost_of(400, 112), 0) << "up to the last place";
-        EXPECT_EQ(lost_of(7, 1), 1) << "there is none left";
-        EXPECT_EQ(lost_of(0, 20), 20);
-    }
-    gpu.begin_cycle();
-    EXPECT_EQ(lost_of(0, 511), 0);
-    EXPECT_EQ(lost_of(510, 2), 2) << "a place too few";
-    gpu.begin_cycle();
-    EXPECT_EQ(lost_of(0, kQueries), 0) << "a new cycle has all of them again";
-}
-
 TEST(CudaWorstCase, IsMeasuredAndDoesTheWorkItWasMadeFor) {
     std::string fault;
     for (const std::uint32_t tree_levels : {1U, 2U, 3U}) {
         WorstCaseCycle cycle;
         cycle.tree_levels = tree_levels;
-        cycle.launches = tree_levels == 2 ? 8 : 1;  // dealt out to many launches too
         cycle.count = 30;
         const auto measured = measure_worst_case(Capacities{}, batch_options(), cycle, fault);
         if (!measured && tree_levels == 1 && fault.find("bug") == std::string::npos) {
             GTEST_SKIP() << fault;
         }
         ASSERT_TRUE(measured) << fault;
-        ASSERT_EQ(measured->lines.size(), cycle.launches == 1 ? 9U : 18U);
+        ASSERT_EQ(measured->lines.size(), 9U);
         for (const WorstCaseMeasurement::Line& line : measured->lines) {
             ASSERT_EQ(line.cycle_us.size(), 10U);
             EXPECT_LE(*std::max_element(line.cycle_us.begin(), line.cycle_us.end()),

@@ -48,12 +48,13 @@ TEST_F(ChooseEngine, NoCycleTakesMoreLaunches) {
     machine.guard.jog.is_promised = false;
     const std::uint32_t tasks = stop_tasks(machine);
     ASSERT_LT(tasks, 100U);
-    for (const std::uint32_t queries : {510U, 511U, 1021U}) {
+    for (const std::uint32_t queries : {510U, 512U, 513U, 1021U}) {
         machine.plan = plan_of(2, tasks, queries, {512, 512, 2048, 4096, 0});
         const CycleDemand demand = cycle_demand(machine, true);
         EXPECT_EQ(demand.calls, 2U);
         EXPECT_EQ(demand.queries, queries + 2);
-        EXPECT_EQ(demand.launches, (queries + 2 + 511) / 512);
+        EXPECT_EQ(demand.launches, queries <= 512 ? 1U : queries <= 1026 ? 2U : 3U);
+        EXPECT_EQ(demand.plan, machine.plan);
     }
     machine.plan = plan_of(3, tasks, 64, {512, 384, 2048, 3072, 0});
     EXPECT_EQ(cycle_demand(machine, true).calls, 3U);
