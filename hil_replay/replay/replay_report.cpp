@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hil_replay/replay/replay_report.hpp"
-#include "firmware_if/setup/format_plan.hpp"
 
 #include <fmt/format.h>
 
+#include "config/text/quote_text.hpp"
 #include "core/base/sincos.hpp"
 #include "firmware_if/cli/limit_text.hpp"
 #include "firmware_if/protocol/obeyed_by.hpp"
+#include "firmware_if/setup/format_plan.hpp"
 #include "hil_replay/replay/format_escapes.hpp"
 #include "hil_replay/replay/limit_table.hpp"
 #include "hil_replay/replay/pairs_at_stop.hpp"
@@ -57,7 +58,8 @@ void print_stop(const ReplayReport& report, const StopEvent& stop, const char* t
         fmt::print(words, "\n  {}", limit_text(stop.limit, machine));
     }
     if (const ProgramStep* step = step_at(report.lines, stop.snapshot.arrived_us)) {
-        fmt::print(words, "\n  {}:{}: {}", report.lines.program, step->line, step->block);
+        fmt::print(words, "\n  {}:{}: {}", escaped(report.lines.program, 4096), step->line,
+                   escaped(step->block));
     }
     fmt::print(words, "\n  {}\n", axes_text(machine, stop.snapshot));
     if (!is_about_distance(stop.reason)) {

@@ -6,11 +6,11 @@
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
-#include <iterator>
 #include <span>
 #include <system_error>
 
+#include "config/text/fault_text.hpp"
+#include "config/text/small_file.hpp"
 #include "core/base/crc32.hpp"
 
 namespace axg {
@@ -18,6 +18,7 @@ namespace {
 
 constexpr std::string_view kTitle = "axguard program lines 1";
 constexpr std::size_t kBlockBytesMax = 200;
+constexpr std::size_t kFileBytesMax = 256U << 20U;
 
 std::uint32_t crc_of(std::string_view text) {
     const std::vector<std::uint8_t> bytes(text.begin(), text.end());
@@ -61,12 +62,6 @@ bool take_key(std::string_view& text, std::string_view key, std::string_view& va
     }
     value = line.substr(key.size());
     return true;
-}
-
-bool read_file(const std::string& path, std::string& out) {
-    std::ifstream file(path, std::ios::binary);
-    out.assign(std::istreambuf_iterator<char>(file), {});
-    return file.good() || file.eof();
 }
 
 bool exists(const std::string& path, std::uint64_t& size_bytes) {
@@ -163,8 +158,9 @@ std::string load_program_lines(const std::string& trace, const std::string& path
                                   ": no program lines: the file does not exist. Pass the file "
                                   "that axguard simulate wrote beside the trace.";
     }
-    if (!read_file(name, text)) {
-        return name + ": no program lines: the file cannot be read.";
+    if (const SmallFileFault fault = read_small_file(name, kFileBytesMax, text);
+        !fault.got.empty()) {
+        return name + ": no program lines: " + fault_text("invalid file", fault.got, fault.wanted);
     }
     ProgramLines lines;
     if (std::string fault = read_program_lines(name, text, lines); !fault.empty()) {
@@ -178,7 +174,7 @@ std::string load_program_lines(const std::string& trace, const std::string& path
     }
     std::string program;
     std::string note;
-    if (exists(lines.program, size_bytes) && read_file(lines.program, program) &&
+    if (read_small_file(lines.program, kFileBytesMax, program).got.empty() &&
         crc_of(program) != lines.program_crc) {
         note = fmt::format(
             "{}: the program changed since the trace was simulated. Lines and blocks are those of "

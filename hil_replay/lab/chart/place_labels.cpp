@@ -47,6 +47,21 @@ double fault_of(const LabelBox& box, const LabelBox& frame, const std::vector<La
     return fault;
 }
 
+double distance(const LabelBox& box, double x, double y) {
+    return std::hypot(std::max({box.left - x, x - box.right, 0.0}),
+                      std::max({box.bottom - y, y - box.top, 0.0}));
+}
+
+/// Whether another mark is about as near to the words as their own.
+bool is_near_another(const std::vector<Label>& labels, const Label& label) {
+    const LabelBox box = box_of(label);
+    const double own = distance(box, label.x, label.y);
+    return std::any_of(labels.begin(), labels.end(), [&](const Label& other) {
+        return (other.x != label.x || other.y != label.y) &&
+               distance(box, other.x, other.y) < own + kLeaderPx;
+    });
+}
+
 }  // namespace
 
 void place_labels(std::vector<Label>& labels, const LabelBox& frame, double mark_radius,
@@ -82,6 +97,7 @@ void place_labels(std::vector<Label>& labels, const LabelBox& frame, double mark
             }
         }
         labels[i] = best;
+        labels[i].is_away = best.is_away || is_near_another(labels, best);
         occupied.push_back(box_of(best));
     }
 }

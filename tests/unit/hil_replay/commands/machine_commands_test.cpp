@@ -139,7 +139,7 @@ TEST_F(Commands, InitTakesTheAxesOfAnIniFile) {
         text, "# GUESS: stopping, position_error, following_error, travel, speed, acceleration\n"))
         << "Y\n"
         << text;
-    EXPECT_TRUE(std::isinf(machine.axes[0].jerk_max)) << "LinuxCNC limits no jerk";
+    EXPECT_EQ(machine.axes[0].jerk_max, kNoJerkLimit) << "LinuxCNC limits no jerk";
     EXPECT_TRUE(has(text, "# W of the INI file: give it to the body that it moves\n")) << text;
     // Meshes elsewhere, and what is wrong with either.
     fs::rename(path("meshes/mill.ini"), path("mill.ini"));

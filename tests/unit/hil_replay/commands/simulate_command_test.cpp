@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "firmware_if/cli/exit_codes.hpp"
 #include "tests/support/replay_fixture.hpp"
@@ -30,12 +31,15 @@ TEST_F(SimulateCommand, WritesTheTraceAndSaysHowHardTheAxesWork) {
     EXPECT_TRUE(std::filesystem::exists(trace));
     EXPECT_NE(out.find("s of program"), std::string::npos) << out;
     EXPECT_EQ(err, "");
-    // No temporary file is left beside it.
-    std::size_t files = 0;
+    // The lines of the program lie beside it, and no temporary file.
+    std::set<std::string> files;
     for (const auto& entry : std::filesystem::directory_iterator(shop.file(""))) {
-        files += entry.path().filename().string().find("trace") != std::string::npos ? 1 : 0;
+        const std::string name = entry.path().filename().string();
+        if (name.find("trace") != std::string::npos) {
+            files.insert(name);
+        }
     }
-    EXPECT_EQ(files, 1U);
+    EXPECT_EQ(files, (std::set<std::string>{"trace.log", "trace.log.lines"}));
 }
 
 TEST_F(SimulateCommand, AFaultyProgramIsExit3WithAllFaultsAndNoTrace) {

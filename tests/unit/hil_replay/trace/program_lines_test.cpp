@@ -82,5 +82,20 @@ TEST(ProgramLines, AChangedProgramIsReportedAndItsOldBlocksAreKept) {
     EXPECT_EQ(step_at(read, 2000)->block, "G0 Z50");
 }
 
+// The program's name comes from the table: a device or a pipe of that name is not waited for.
+TEST(ProgramLines, NothingButAFileIsRead) {
+    const test::Workshop shop;
+    const std::string trace = shop.write("t.log", "12345");
+    ProgramLines lines = some_lines();
+    lines.program = "/dev/zero";
+    (void)shop.write("t.log.lines", program_lines_text(lines));
+    ProgramLines read;
+    EXPECT_EQ(load_program_lines(trace, "", read), "");
+    EXPECT_EQ(read.steps.size(), 3U);
+    EXPECT_NE(load_program_lines(trace, "/dev/zero", read).find("found a device"),
+              std::string::npos);
+    EXPECT_TRUE(read.is_empty());
+}
+
 }  // namespace
 }  // namespace axg
