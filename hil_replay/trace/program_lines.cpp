@@ -121,9 +121,9 @@ std::string program_lines_text(const ProgramLines& lines) {
 
 std::string read_program_lines(const std::string& name, std::string_view text, ProgramLines& out) {
     out = {};
-    const std::string damaged = name +
-                                ": no program lines: the file is damaged or was written by another "
-                                "version. Run axguard simulate again.";
+    std::string damaged = name +
+                          ": no program lines: the file is damaged or was written by another "
+                          "version. Run axguard simulate again.";
     ProgramLines lines;
     std::string_view program, crc, bytes;
     if (!take_checksum(text) || take_line(text) != kTitle || !take_key(text, "program ", program) ||
