@@ -62,7 +62,8 @@ def main():
     with tempfile.TemporaryDirectory(prefix="axg-can-vm-") as out:
         keep = ("AXG_", "PATH")
         settings = {key: value for key, value in os.environ.items() if key.startswith(keep)}
-        settings.update(AXG_VM_OUT=out, AXG_VM_MODULES=" ".join(module_files(folder)))
+        settings.update(AXG_VM_OUT=out, AXG_VM_MODULES=" ".join(module_files(folder)),
+                        AXG_VM_LIMIT_S=str(LIMIT_S))
         pathlib.Path(out, "settings").write_text(
             "\0".join(f"{key}={value}" for key, value in settings.items()))
         guest = pathlib.Path(__file__).with_name("guest.py")

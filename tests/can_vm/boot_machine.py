@@ -68,6 +68,7 @@ def settings(guest):
     keep = {key: value for key, value in os.environ.items()
             if key.startswith("AXG_") and key not in ("AXG_BUILD", "AXG_SOURCE", "AXG_GUEST")}
     keep.update(AXG_BUILD="/axguard/build", AXG_SOURCE="/axguard/source", AXG_VM_OUT="/out",
+                AXG_VM_LIMIT_S=str(LIMIT_S),
                 AXG_VM_MODULES=" ".join(modules), PATH="/usr/sbin:/usr/bin")
     return "\0".join(f"{key}={value}" for key, value in keep.items())
 

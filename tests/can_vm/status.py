@@ -51,7 +51,7 @@ def refuses_what_is_no_socket():
         STATUS.rmdir() if STATUS.is_dir() else STATUS.unlink()
 
 
-def readers():
+def readers(guard):
     """Many at once: those that read nothing, those that write, and one that reads byte by byte."""
     silent = [connected() for _ in range(READERS)]
     for at, reader in enumerate(silent):
@@ -65,6 +65,7 @@ def readers():
     text = b""
     while part := slow.recv(1):
         text += part
+    guard.check_busy()
     expect(json.loads(text)["phase"] == "armed", text)
     return silent
 
@@ -84,6 +85,7 @@ def status():
     expect(stat.S_IMODE(STATUS.stat().st_mode) == 0o666, STATUS.stat())
 
     said = line()
+    guard.check_busy()
     expect(said["phase"] == "armed" and said["machine"] == "paper-trunnion", said)
     expect(said["bus"] == "vcan0" and said["session"] is True and said["stands"] is True, said)
     expect(said["withheld"] == "nothing" and len(said["configuration_sha256"]) == 64, said)
@@ -95,7 +97,7 @@ def status():
 
     bus, began = Bus(), time.monotonic()
     while time.monotonic() < began + 2:
-        for reader in readers():
+        for reader in readers(guard):
             reader.close()
     guard.check_busy()
     expect(bus.count(PERMIT) > 200, "permits while it was read", *guard.lines)
