@@ -57,6 +57,7 @@ void serve(LiveQueues& queues, std::int64_t now_us) {
         live_result.epoch = query.epoch;
         live_result.period = query.period;
         live_result.result.has_permit = query.event.state == ReceiverState::valid;
+        live_result.result.samples = 3;
         live_result.sync_counter = query.event.sync_counter;
         live_result.latched_us = query.event.snapshot.latched_us;
         live_result.arrived_us = live_result.done_us = now_us;

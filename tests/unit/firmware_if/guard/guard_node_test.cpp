@@ -140,7 +140,11 @@ TEST_P(GuardNodeTest, WhatIsNotProvenBeforeArmingLatchesNothing) {
         const auto proof = is_proven(sample) ? JointBoxProof::proven : JointBoxProof::budget_spent;
         const PairProof pair{
             0, kNoIndex, {proof, QueryStatus::ok, 1, {}}, {QueryStatus::ok, Containment::none}};
-        return judge({SnapshotStatus::ok, kKnownAnswerSignature, true, false, false, {&pair, 1}},
+        return judge({.status = SnapshotStatus::ok,
+                      .known_answer_signature = kKnownAnswerSignature,
+                      .is_settled = true,
+                      .samples = 3,
+                      .proofs = {&pair, 1}},
                      true, world.is_armed);
     };
     world.run_periods(40);
