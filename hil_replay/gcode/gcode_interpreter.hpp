@@ -69,6 +69,8 @@ class GcodeInterpreter {
     void go_to(const Hole& hole, double height_mm, bool is_feed);
     void wait(double seconds);
     void stop();
+    /// Where the axes stand, in the coordinates of `position`.
+    [[nodiscard]] AxisPositions standing_at() const;
     [[nodiscard]] Move new_move(MoveKind kind) const;
     void append(const Move& next);
     /// The next move of the program; a fault, and its end, where it has too many.

@@ -153,7 +153,7 @@ bool GcodeInterpreter::set_feed(Move& next) {
     bool moves_linear = state_.motion != 10;
     for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
         moves_linear = moves_linear || (machine_.axes[i].kind == AxisKind::linear &&
-                                        next.target[i] != state_.position[i]);
+                                        next.target[i] != standing_at()[i]);
     }
     next.feed_kind = FeedKind::per_minute;
     next.feed = feed_per_minute(moves_linear);
@@ -201,6 +201,12 @@ bool GcodeInterpreter::set_arc(Move& next) {
     if (has_center == block_->has('R')) {
         fault(word, has_center ? "found both R and a centre, expected one of them"
                                : "expected R, or the centre as I J K of the plane");
+        return false;
+    }
+    if (state_.standing_at) {
+        fault(word,
+              "the tool offset changed under tool centre point control, and the arc would not "
+              "begin where the tip is; write G0 or G1 before it");
         return false;
     }
     ArcWords words;
@@ -267,6 +273,10 @@ void GcodeInterpreter::go_home() {
     append(home);
 }
 
+AxisPositions GcodeInterpreter::standing_at() const {
+    return state_.standing_at.value_or(state_.position);
+}
+
 Move GcodeInterpreter::new_move(MoveKind kind) const {
     Move next;
     next.kind = kind;
@@ -275,14 +285,16 @@ Move GcodeInterpreter::new_move(MoveKind kind) const {
     next.line = block_->line;
     next.tool = state_.spindle_tool;
     next.control = state_.control;
-    next.target = state_.position;
+    const bool goes_on = kind == MoveKind::line || kind == MoveKind::arc;
+    next.target = goes_on ? state_.position : standing_at();
     return next;
 }
 
 void GcodeInterpreter::append(const Move& next) {
-    travel_.check(machine_, result_.program, state_.position, next, result_.faults);
-    const bool is_still = next.kind == MoveKind::line && next.target == state_.position;
+    travel_.check(machine_, result_.program, standing_at(), next, result_.faults);
+    const bool is_still = next.kind == MoveKind::line && next.target == standing_at();
     state_.position = next.target;
+    state_.standing_at.reset();
     if (!is_still) {
         push(next);
     }

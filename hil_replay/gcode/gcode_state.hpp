@@ -43,7 +43,11 @@ struct GcodeState {
     std::uint32_t control = kNoIndex;            // Program::controls, while it is on
     std::optional<std::uint16_t> selected_tool;  // T, until M6 puts it into the spindle
     std::uint16_t spindle_tool = 0;
-    AxisPositions position{};  // machine coordinates, or where control has commanded the tip
+    // Machine coordinates, or where control has commanded the tip: what words left out mean.
+    AxisPositions position{};
+    // Where the axes stand in the same coordinates, while that is elsewhere: from a change of the
+    // tool offset under control to the next move.
+    std::optional<AxisPositions> standing_at;
     bool has_ended = false;
 };
 

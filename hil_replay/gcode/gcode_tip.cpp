@@ -3,12 +3,24 @@
 // the words of LinuxCNC's switchable kinematics, G43.4 and G49 those of Fanuc.
 // Source: LinuxCNC "G-codes" and "Switchable Kinematics"; docs/reference/gcode.md.
 #include <algorithm>
+#include <cmath>
 
 #include "hil_replay/gcode/gcode_interpreter.hpp"
 
 namespace axg {
 
 using enum ModalGroup;
+
+namespace {
+
+/// Equal but for rounding; mm or rad.
+bool is_near(const AxisPositions& a, const AxisPositions& b) {
+    constexpr double kTiny = 1e-9;
+    return std::equal(a.begin(), a.end(), b.begin(),
+                      [](double one, double other) { return std::abs(one - other) < kTiny; });
+}
+
+}  // namespace
 
 void GcodeInterpreter::set_tool_length() {
     const std::int32_t code = block_->code(tool_length);
@@ -89,11 +101,13 @@ void GcodeInterpreter::change_coordinates(const AxisPositions& offset, bool is_c
         tip_control_ = control;
     }
     std::vector<TipControl>& controls = result_.program.controls;
+    const AxisPositions programmed = state_.position;
     if (was_controlled) {
         AxisPositions axes;
-        controls[state_.control].axes_at(state_.position, axes);
+        controls[state_.control].axes_at(standing_at(), axes);
         state_.position = axes;
     }
+    state_.standing_at.reset();
     state_.control = kNoIndex;
     if (is_controlled) {
         tip_control_->set_tool_offset(offset);
@@ -105,6 +119,10 @@ void GcodeInterpreter::change_coordinates(const AxisPositions& offset, bool is_c
         state_.position = tip_control_->commanded_at(state_.position);
     }
     push(new_move(MoveKind::coordinates));
+    if (was_controlled && is_controlled && !is_near(programmed, state_.position)) {
+        state_.standing_at = state_.position;
+        state_.position = programmed;  // no word says that the tip is to be elsewhere
+    }
 }
 
 }  // namespace axg

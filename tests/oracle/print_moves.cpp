@@ -5,9 +5,11 @@
 #include <initializer_list>
 #include <iterator>
 #include <string>
+#include <string_view>
 
 #include "core/base/sincos.hpp"
 #include "hil_replay/gcode/gcode_reader.hpp"
+#include "tests/support/motion_machine.hpp"
 
 namespace axg {
 namespace {
@@ -34,10 +36,22 @@ Machine boundless_machine() {
     return machine;
 }
 
+/// For tool centre point control: a table that tilts and turns, and a travel without end.
+Machine tip_machine() {
+    Machine machine = motion_test_machine();
+    for (Axis& axis : machine.axes) {
+        axis.min = -1e6;
+        axis.max = 1e6;
+    }
+    return machine;
+}
+
+/// The six axes that are compared; 0 of one that the machine lacks.
 void print_positions(const Machine& machine, const Move& move) {
-    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-        const bool is_rotary = machine.axes[i].kind == AxisKind::rotary;
-        std::printf(" %.9f", move.target[i] * (is_rotary ? 180.0 / kPi : 1.0));
+    for (const char letter : {'X', 'Y', 'Z', 'A', 'B', 'C'}) {
+        const std::uint32_t axis = axis_of_letter(machine, letter);
+        const double position = axis == kNoIndex ? 0 : move.target[axis];
+        std::printf(" %.9f", position * (letter < 'X' ? 180.0 / kPi : 1.0));
     }
 }
 
@@ -59,10 +73,9 @@ void print_move(const Machine& machine, const Move& move) {
     std::printf("\n");
 }
 
-int print_moves(const char* path) {
+int print_moves(const char* path, const Machine& machine) {
     std::ifstream file(path, std::ios::binary);
     const std::string text(std::istreambuf_iterator<char>(file), {});
-    const Machine machine = boundless_machine();
     GcodeOptions options;
     options.block_delete = BlockDelete::run;
     const GcodeResult result = read_gcode(text, machine, options);
@@ -83,5 +96,9 @@ int print_moves(const char* path) {
 }  // namespace axg
 
 int main(int argc, char** argv) {
-    return argc == 2 ? axg::print_moves(argv[1]) : 2;
+    const bool is_tip = argc == 3 && std::string_view(argv[1]) == "--tip";
+    if (argc != 2 && !is_tip) {
+        return 2;
+    }
+    return axg::print_moves(argv[argc - 1], is_tip ? axg::tip_machine() : axg::boundless_machine());
 }

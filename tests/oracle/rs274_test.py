@@ -20,6 +20,8 @@ TOLERANCE = 2.6e-3  # mm: it prints 1e-4 of an inch or mm
 CYCLES = ("G73", "G81", "G82", "G83", "G84", "G85", "G86", "G89")
 TOOLS = "tools.tbl"
 TOOL_NUMBERS = (1, 8, 21, 48, 52, 150)
+INCH = 25.4  # mm: the unit of its tool table
+TIP_TOOLS = {1: 50, 2: 80}  # mm, of tests/support/motion_machine.hpp
 # Words of another machine's configuration: neither side is asked about them.
 LEFT_OUT = re.compile(r"(?i)\bM42[89]\b")
 CALL = re.compile(r"N\S*\s+(\w+)\(([^)]*)\)")
@@ -85,9 +87,9 @@ def of_linuxcnc(program):
     return canon.motions if "PROGRAM_END" in done.stdout and done.returncode == 0 else None
 
 
-def of_axguard(print_moves, program):
-    done = subprocess.run([print_moves, program], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                          text=True, check=False)
+def of_axguard(print_moves, program, *options):
+    done = subprocess.run([print_moves, *options, program], stdout=subprocess.PIPE,
+                          stderr=subprocess.PIPE, text=True, check=False)
     if done.returncode != 0:
         return None, done.stderr
     motions = []
@@ -235,6 +237,24 @@ def random_program(rng):
     return "\n".join(lines + ["M2", ""])
 
 
+def tip_program(rng):
+    """Lines under tool centre point control: its interpreter has the same targets with and without,
+    for kinematics are the controller's."""
+    number = lambda low, high: f"{rng.uniform(low, high):.3f}"
+    some_axes = lambda: " ".join(f"{letter}{number(-20, 20)}"
+                                 for letter in rng.sample("XYZAC", rng.randint(1, 3)))
+    lines = [f"G{rng.choice((20, 21))} G90 G94 F{number(50, 500)}", "M428", "G0 X0 Y0 Z20 A-9"]
+    for _ in range(rng.randint(3, 25)):
+        lines.append(rng.choice((
+            lambda: f"G0 {some_axes()}", lambda: f"G1 {some_axes()}",
+            lambda: f"G43 H{rng.choice((1, 2))}", lambda: "G49",
+            lambda: f"G43 H{rng.choice((1, 2))} G0 {some_axes()}",
+            lambda: f"G91 G1 {some_axes()}\nG90", lambda: f"G92 {some_axes()}",
+            lambda: f"G10 L20 P{rng.randint(1, 9)} {some_axes()}", lambda: "G0 X#5421 Z#5420",
+            lambda: "G4 P0.5"))())
+    return "\n".join(lines + ["M2", ""])
+
+
 def main():
     print_moves, gcode = sys.argv[1], pathlib.Path(sys.argv[2])
     if shutil.which("rs274") is None:
@@ -243,7 +263,7 @@ def main():
     seed, count = int(os.environ.get("AXG_SEED", "274")), int(os.environ.get("AXG_COUNT", "400"))
     print(f"seed {seed} (AXG_SEED overrides it), {count} random programs")
     rng = random.Random(seed)
-    faults, accepted, motions = [], 0, 0
+    faults, accepted, motions, tip_motions = [], 0, 0, 0
     with tempfile.TemporaryDirectory() as folder:
         program = os.path.join(folder, "program.ngc")
         pathlib.Path(folder, TOOLS).write_text(
@@ -273,6 +293,22 @@ def main():
                 print(text)
                 break
         random_accepted = accepted
+        pathlib.Path(folder, TOOLS).write_text(
+            "".join(f"T{n} P{n} Z{z / INCH:.9f}\n" for n, z in TIP_TOOLS.items()), encoding="ascii")
+        for i in range(count):
+            text = tip_program(rng)
+            pathlib.Path(program).write_text(text, encoding="ascii")
+            ours, why = of_axguard(print_moves, program, "--tip")
+            pathlib.Path(program).write_text(LEFT_OUT.sub("", text), encoding="ascii")
+            theirs = of_linuxcnc(program)
+            found = why or ("they refuse it" if theirs is None else difference(ours, theirs))
+            tip_motions += len(ours or ())
+            if found:
+                faults.append(f"tip program {i}: {found}")
+                print(text)
+                break
+        pathlib.Path(folder, TOOLS).write_text(
+            "".join(f"T{n} P{n} Z0\n" for n in TOOL_NUMBERS), encoding="ascii")
         for path in sorted(gcode.glob("*.ngc")):
             text = LEFT_OUT.sub("", path.read_text(encoding="latin-1"))
             pathlib.Path(program).write_text(text, encoding="latin-1")
@@ -282,7 +318,8 @@ def main():
     for fault in faults[:10]:
         print(fault)
     print(f"{random_accepted} random programs and {accepted - random_accepted} real ones accepted "
-          f"by both, {motions} motions, {len(faults)} faults")
+          f"by both, {motions} motions; {tip_motions} motions under tool centre point control; "
+          f"{len(faults)} faults")
     return 1 if faults or random_accepted < count / 4 else 0
 
 

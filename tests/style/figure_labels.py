@@ -10,7 +10,7 @@ import sys
 
 from sources import finish
 
-CHARTS = ("speed-accuracy.svg", "cycle-accuracy.svg")
+CHARTS = ("speed-accuracy.svg", "cycle-accuracy.svg", "model-curve.svg")
 SLACK = 2.0
 NARROW, WIDE = set("iljtfrI.,:;'|()[]! "), set("mwMW%@")
 LABEL = re.compile(r'<g transform="translate\(([\d.-]+),([\d.-]+)\)( rotate\([^)]*\))?"[^>]*?'

@@ -21,8 +21,7 @@
 namespace axg::chart {
 namespace {
 
-constexpr double kDeadlineUs = 500;  // the default of deadline_us
-constexpr double kExactMm = 0.01;    // what is exact is drawn there
+constexpr double kExactMm = 0.01;  // what is exact is drawn there
 constexpr std::array<std::string_view, 8> kColumns = {"panel", "name",     "kind",   "statistic",
                                                       "us",    "early_mm", "missed", "source"};
 
@@ -126,7 +125,7 @@ ScatterPicture picture_of(ScatterPanel contact, ScatterPanel stop) {
     contact.better_y = 0.3;
     for (ScatterPanel* const panel : {&contact, &stop}) {
         panel->wall_x = kDeadlineUs;
-        panel->wall_words = "deadline, 500 µs";
+        panel->wall_words = kDeadlineWords;
         panel->pareto = pareto_of(panel->marks);
     }
     picture.panels = {std::move(contact), std::move(stop)};

@@ -9,11 +9,17 @@
 
 namespace axg::chart {
 
+inline constexpr double kDeadlineUs = 500;  // the default of deadline_us
+inline constexpr const char* kDeadlineWords = "deadline, 500 µs";
+
 /// Speed against accuracy, missed contacts, pairs not told apart: one measurement, three pictures.
 [[nodiscard]] std::vector<Figure> method_figures(const Request& request);
 
 /// Whole cycles against early stops, beside the records of other libraries.
 [[nodiscard]] Figure cycle_figure(const Request& request);
+
+/// Coarser models: time against early stops, from the records of two machines.
+[[nodiscard]] Figure model_figure(const Request& request);
 
 /// Undecided rate of the certified methods against the true gap.
 [[nodiscard]] Figure undecided_gap_figure(const Request& request);

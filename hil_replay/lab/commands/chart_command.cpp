@@ -55,6 +55,7 @@ std::vector<Figure> one(const Request& request) {
 constexpr Step kSteps[] = {
     {"methods", &chart::method_figures},
     {"cycles", &one<&chart::cycle_figure>},
+    {"models", &one<&chart::model_figure>},
     {"undecided gap", &one<&chart::undecided_gap_figure>},
     {"rechecks", &one<&chart::rechecks_figure>},
     {"clearance error", &one<&chart::clearance_error_figure>},

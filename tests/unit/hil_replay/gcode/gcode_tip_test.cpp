@@ -108,6 +108,39 @@ TEST(GcodeTip, AnotherToolOffsetRenamesThePlaceToo) {
     EXPECT_EQ(program_of("G43 H1 M428\nG43 H2\nG43 H1\nG43 H2\n").controls.size(), 2U);
 }
 
+// As LinuxCNC's interpreter has it, which knows no kinematics: oracle.rs274 compares both.
+TEST(GcodeTip, WordsLeftOutAfterAnotherToolOffsetMeanWhatTheyMeantBefore) {
+    const Program program = program_of("M428\nG0 X0 Y0 Z-60 A-30\nG43 H1 Z-50\n");
+    ASSERT_EQ(program.moves.size(), 4U);
+    const Move &standing = program.moves[2], &next = program.moves[3];
+    EXPECT_EQ(standing.kind, MoveKind::coordinates);
+    EXPECT_NEAR(std::abs(standing.target[kY]), 50 * std::sin(kPi / 6), 1e-9)
+        << "the tip is a tilted tool's length from where the nose was";
+    EXPECT_EQ(next.target[kX], 0);
+    EXPECT_EQ(next.target[kY], 0) << "and goes to the place that the program still means";
+    EXPECT_EQ(next.target[kZ], 0) << "-50, and the length of tool 1";
+    // Back to the place by its own words is a move, though no word changes.
+    EXPECT_EQ(program_of("M428\nG0 Z-60 A-30\nG43 H1\nG0 Z[-60 - 50]\n").moves.size(), 4U);
+    EXPECT_EQ(end_of("M428\nG0 X0 Z-60 A-30\nG43 H1\nG91 G0 X2\n")[kX], 2);
+    EXPECT_EQ(end_of("M428\nG0 X3 Z-60 A-30\nG43 H1\nG92 X0\nG0 X0\n")[kX], 3);
+}
+
+TEST(GcodeTip, NothingButAMoveGoesToThePlaceThatIsMeant) {
+    const Program program = program_of("M428\nG0 X0 Y0 Z-60 A-30\nG43 H1\nG4 P1\nM429\nG4 P1\n");
+    ASSERT_EQ(program.moves.size(), 6U);
+    const AxisPositions before = axes_after(program, program.moves[1]);
+    for (std::size_t move = 2; move < 6; ++move) {
+        for (std::size_t i = 0; i < 5; ++i) {
+            EXPECT_NEAR(axes_after(program, program.moves[move])[i], before[i], 1e-9)
+                << move << ' ' << i;
+        }
+    }
+    EXPECT_NE(fault_of("M428\nG0 X0 Y0 Z-60 A-30\nG43 H1\nG2 I5 F100\n").find("write G0 or G1"),
+              std::string::npos);
+    EXPECT_EQ(program_of("M428\nG0 Z-60\nG43 H1\nG2 I5 F100\n").moves.size(), 4U)
+        << "not tilted, the tip is at the place";
+}
+
 TEST(GcodeTip, OffsetsByWordsReplaceTheNamedAxes) {
     EXPECT_EQ(end_of("G43.1 X1 Z50\nG0 X0 Y0 Z0\n")[kX], 1.0);
     const AxisPositions end = end_of("G43.1 X1 Z50\nG20 G43.1 Z1\nG21 G0 X0 Y2 Z0\n");

@@ -17,6 +17,7 @@
 #ifdef AXG_EXACT
 #include "hil_replay/lab/cases/pair_cases.hpp"
 #include "hil_replay/lab/chart/exact_clearance.hpp"
+#include "hil_replay/lab/chart/figures.hpp"
 #include "hil_replay/lab/chart/method_scores.hpp"
 #include "hil_replay/lab/judge/exact_judge.hpp"
 #include "hil_replay/plan/gnuplot.hpp"
@@ -212,7 +213,7 @@ class ChartCommand : public testing::Test {
     static bool has_gnuplot() { return std::system("gnuplot --version >/dev/null 2>&1") == 0; }
 
     static constexpr const char* kFigures[] = {
-        "speed-accuracy", "missed-contacts", "not-told-apart",  "cycle-accuracy",
+        "speed-accuracy", "missed-contacts", "not-told-apart",  "cycle-accuracy", "model-curve",
         "undecided-gap",  "rechecks",        "clearance-error", "flips"};
     static test::Workshop* workshop_;
     static int exit_code_;
@@ -258,6 +259,27 @@ TEST_F(ChartCommand, CyclesHaveTheirTimes) {
         EXPECT_EQ(rows[i][7], records[i][7]);
     }
     EXPECT_EQ(measured, 3U);
+}
+
+// Of the records beside it: a level bends back if a finer one of its machine is faster.
+TEST_F(ChartCommand, ModelsThatBendBackAreNamed) {
+    EXPECT_EQ(chart::kDeadlineUs, Machine{}.deadline_us);
+    const auto rows = rows_of(table("first", "model-curve.csv"));
+    ASSERT_EQ(rows.size(), 11U);
+    std::string bends;
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+        const bool is_first = rows[i][0] != rows[i - 1][0];
+        bool bends_back = false;
+        for (std::size_t j = i - 1; !is_first && j > 0 && rows[j][0] == rows[i][0]; --j) {
+            bends_back |= std::stod(rows[j][3]) < std::stod(rows[i][3]);
+        }
+        EXPECT_EQ(rows[i][6], bends_back ? "1" : "0") << rows[i][0] << " " << rows[i][1];
+        bends += bends_back ? rows[i][0] + rows[i][1] + " " : "";
+    }
+    EXPECT_EQ(bends, "real0.05 real0.1 real0.2 ");
+    const std::string script = table("first", "model-curve.gp");
+    EXPECT_NE(script.find("0.05 mm, bends back"), std::string::npos);
+    EXPECT_NE(script.find(chart::kDeadlineWords), std::string::npos);
 }
 
 TEST_F(ChartCommand, CertifiedMethodsNeverClaimTooMuch) {
