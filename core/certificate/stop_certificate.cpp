@@ -33,43 +33,6 @@ std::uint32_t stop_tasks(const Machine& machine) noexcept {
     return count;
 }
 
-AxisLimits stop_limits(const Machine& machine, std::uint32_t axis) noexcept {
-    const Axis& of = machine.axes[axis];
-    return {.speed_max = of.speed_max,
-            .acceleration_max = of.acceleration_max,
-            .jerk_max = of.jerk_max,
-            .stopping_min = of.stopping_min,
-            .stop_turns_round = machine.guard.stop_reversal == StopReversal::jerk_limited};
-}
-
-double capped_speed(const Axis& axis, double share) noexcept {
-    // Half a line of motion within +-f of its command, both with accelerations up to a.
-    const double swing = 2 * std::sqrt(2 * axis.acceleration_max * axis.following_error);
-    return std::min(axis.speed_max, (share * axis.speed_max + swing) * kUp);
-}
-
-double free_seconds(const Machine& machine, std::uint32_t samples) noexcept {
-    const double period_s = machine.can.sample_us * 1e-6;
-    return samples * period_s * (1 + kPeriodShare) + sample_errors(machine, 0, 0).latch_jitter_s +
-           machine.guard.board_reaction_s;
-}
-
-SampleErrors sample_errors(const Machine& machine, std::uint32_t axis, double count) noexcept {
-    const GuardRules& guard = machine.guard;
-    const double period_s = machine.can.sample_us * 1e-6;
-    // Frames of signals say nothing about the instant: it is known to their jitter, and the anchor
-    // that numbers them leans by the share of a period.
-    const bool has_instant = machine.can.format != CanFormat::signals;
-    const double arrival_s = arrival_jitter_us_of(machine.can) * 1e-6 + period_s * kPeriodShare;
-    return {
-        .period_s = period_s,
-        .period_share = kPeriodShare,
-        .latch_jitter_s =
-            has_instant ? guard.latch_jitter_s : std::max(guard.latch_jitter_s, arrival_s),
-        .position = machine.axes[axis].position_error + machine.axes[axis].following_error + count,
-        .is_jerk_limited = guard.free_jerk_limited};
-}
-
 JointBoxTask pair_task(const Machine& machine, std::uint32_t pair, std::uint32_t tool,
                        std::span<const BodyExtent> extents) noexcept {
     const Pair& p = machine.pairs[pair];

@@ -19,6 +19,7 @@
 #include "core/certificate/pair_queries.hpp"
 #include "core/certificate/permit_ladder.hpp"
 #include "core/certificate/staged_proof.hpp"
+#include "core/certificate/stop_limits.hpp"
 #include "core/collision/containment.hpp"
 #include "core/collision/engine.hpp"
 #include "core/machine/axis_snapshot.hpp"
@@ -26,22 +27,6 @@
 #include "core/mesh/mesh.hpp"
 
 namespace axg {
-
-/// From the instant a sample was latched until the board must have begun to brake, s: the permit
-/// for it, valid for so many samples, has run out, and the board has reacted.
-[[nodiscard]] double free_seconds(const Machine& machine, std::uint32_t samples) noexcept;
-
-/// Errors of the positions that a board's frames report.
-/// @param count  mm or rad of one count on the wire
-[[nodiscard]] SampleErrors sample_errors(const Machine& machine, std::uint32_t axis,
-                                         double count) noexcept;
-
-[[nodiscard]] AxisLimits stop_limits(const Machine& machine, std::uint32_t axis) noexcept;
-
-/// How fast an axis gets at most whose commands its board keeps below this share of its largest
-/// speed: it swings about them within its following error, and a stop may begin at any point of
-/// that.
-[[nodiscard]] double capped_speed(const Axis& axis, double share) noexcept;
 
 /// A pair with one tool, its box still to be said.
 /// @param extents  [surfaces] the engine's, in its order; they must outlive the task

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a machine file promises of the motion of its axes, as the certificate uses it: limits, errors
+// of the samples, and the time until braking. Pure. Source: docs/theory/certificate.md, "How far an
+// axis can go".
+#pragma once
+
+#include <cstdint>
+
+#include "core/certificate/motion_history.hpp"
+#include "core/certificate/stop_reach.hpp"
+#include "core/machine/machine.hpp"
+
+namespace axg {
+
+/// From the instant a sample was latched until the board must have begun to brake, s: the permit
+/// for it, valid for so many samples, has run out, and the board has reacted.
+[[nodiscard]] double free_seconds(const Machine& machine, std::uint32_t samples) noexcept;
+
+/// Errors of the positions that a board's frames report.
+/// @param count  mm or rad of one count on the wire
+[[nodiscard]] SampleErrors sample_errors(const Machine& machine, std::uint32_t axis,
+                                         double count) noexcept;
+
+[[nodiscard]] AxisLimits stop_limits(const Machine& machine, std::uint32_t axis) noexcept;
+
+/// How fast an axis gets at most whose commands its board keeps below this share of its largest
+/// speed: it swings about them within its following error, and a stop may begin at any point of
+/// that.
+[[nodiscard]] double capped_speed(const Axis& axis, double share) noexcept;
+
+}  // namespace axg
