@@ -19,7 +19,7 @@ TEST(MachineDrives, ProcessDataBecomeSignals) {
     EXPECT_EQ(can.format, CanFormat::cia402);
     EXPECT_EQ(can.sync_counter_max, 240);
     EXPECT_EQ(can.sync_window_us, 800U);
-    EXPECT_EQ(can.stale_after_us, 4000U);
+    EXPECT_EQ(can.stale_after_us, 12'000U) << "as long as the longest permit";
     ASSERT_EQ(can.signals.size(), 7U);
     const CanSignal& x = can.signals[0];
     EXPECT_EQ(x.id, 0x183U);

@@ -573,24 +573,6 @@ TEST(TheOutputLine, ThatIsNoneIsRefusedInWords) {
     EXPECT_NE(fault.find("ls -l /dev/gpiochip"), std::string::npos) << fault;
 }
 
-TEST(Latch, OnlyTheExactPatternIsClear) {
-    LatchCell cell;
-    EXPECT_TRUE(is_latched(cell)) << "a new page is zeros";
-    set_latch(cell, false);
-    EXPECT_FALSE(is_latched(cell));
-    const LatchCell clear = cell;
-    for (int bit = 0; bit < 64; ++bit) {
-        cell = clear;
-        cell.word ^= std::uint64_t{1} << bit;
-        EXPECT_TRUE(is_latched(cell));
-        cell = clear;
-        cell.inverse ^= std::uint64_t{1} << bit;
-        EXPECT_TRUE(is_latched(cell));
-    }
-    set_latch(cell, true);
-    EXPECT_TRUE(is_latched(cell));
-}
-
 INSTANTIATE_TEST_SUITE_P(Formats, GuardNodeTest,
                          testing::Values(CanFormat::classical, CanFormat::fd),
                          [](const auto& tested) {

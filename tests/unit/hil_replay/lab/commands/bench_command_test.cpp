@@ -35,8 +35,8 @@ TEST(BenchCommand, PosesTheBoxesOfAMachineThatProvesNothing) {
     fs::remove(file);
     EXPECT_EQ(document["bench"], "pose");
     EXPECT_EQ(document["tasks"], 8);
-    EXPECT_EQ(document["questions"], 8 + 8 * 4 + 8 * 64 + 3 * 2)
-        << "whole boxes, the leaves below each, and the known-answer test of three stages";
+    EXPECT_EQ(document["questions"], 2 * 8 + 8 * 4 + 8 * 64 + 4 * 2)
+        << "whole boxes for both permits, the leaves below each, and a known-answer test a batch";
     EXPECT_GT(document["us"], 0.0);
     EXPECT_EQ(run_axguard_lab({"bench", "--paper", "--pose", "no.yaml"}), kExitUsage);
     EXPECT_EQ(run_axguard_lab({"bench", "--pose", "no.yaml"}), kExitInput);
