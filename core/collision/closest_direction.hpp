@@ -67,6 +67,7 @@ AXG_HD void try_face(Closest<V>& best, const V3<V>* p, const V3<V>* e, const V3<
     const V zero = lanes::Traits<V>::of(0.0);
     const V height = safe_quotient(dot3(n, sub(q, p[0])), nn);
     auto inside = greater(nn, zero);
+    AXG_UNROLL(V)
     for (int i = 0; i < 3; ++i) {
         inside = both(inside, greater(dot3(cross3(n, e[i]), sub(q, p[i])), zero));
     }
@@ -84,7 +85,9 @@ AXG_HD Closest<V> closest_direction(const TrianglePair<V>& p, const PairAxes<V>&
     best.direction = sub(p.b[0], p.a[0]);
     best.square = dot3(best.direction, best.direction);
     const auto always = lanes::greater(lanes::Traits<V>::of(1.0), lanes::Traits<V>::of(0.0));
+    AXG_UNROLL(V)
     for (int i = 0; i < 3; ++i) {
+        AXG_UNROLL(V)
         for (int j = 0; j < 3; ++j) {
             const V3<V> d = between_segments(p.a[i], x.ea[i], p.b[j], x.eb[j]);
             keep_closer(best, d, always);
@@ -95,6 +98,7 @@ AXG_HD Closest<V> closest_direction(const TrianglePair<V>& p, const PairAxes<V>&
         }
     }
     const V na = dot3(x.na, x.na), nb = dot3(x.nb, x.nb);
+    AXG_UNROLL(V)
     for (int i = 0; i < 3; ++i) {
         try_face(best, p.a, x.ea, x.na, na, p.b[i], true);
         try_face(best, p.b, x.eb, x.nb, nb, p.a[i], false);

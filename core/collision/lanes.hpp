@@ -6,7 +6,20 @@
 
 #include "core/base/host_device.hpp"
 
+// In front of a loop over the axes of a pair in V: on a device all of it is written out, unless V
+// says otherwise. No result depends on it.
+#if defined(__CUDA_ARCH__)
+#define AXG_PRAGMA(words) _Pragma(#words)
+#define AXG_UNROLL(V) AXG_PRAGMA(unroll axg::lanes::kUnrollTo<V>)
+#else
+#define AXG_UNROLL(V)
+#endif
+
 namespace axg::lanes {
+
+/// Turns of an axis loop that are written out; no such loop has more than nine.
+template <class V>
+inline constexpr int kUnrollTo = 16;
 
 // min and max as x86 defines them: the second operand wins ties, signed zeros and NaN. Inputs hold
 // no NaN anyway.

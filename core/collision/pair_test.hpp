@@ -42,18 +42,14 @@ AXG_HD TrianglePair<V> scaled_pair(const V3<V>* a, const V3<V>* b, V d) noexcept
 /// Source: docs/theory/accuracy.md, section 2.
 inline constexpr bool kTriesAxesWithMargin = false;
 
-/// True only where every point of a is more than r from every point of b (kMargin false: r = 0).
-/// @tparam kTriesAxes  whether all seventeen axes are tried by themselves
-/// @param a, b          [3] local vertices, |coordinate| <= 2^20 mm
-/// @param edges_square  kMargin: as of closest_direction, where any lane is not apart; may be null
+/// What the shared axes left undecided, in the later stages.
+/// @param told  what they decided; not all lanes
 template <bool kMargin, bool kTriesAxes = !kMargin || kTriesAxesWithMargin, class V>
-AXG_HD typename lanes::Traits<V>::Mask apart(const V3<V>* a, const V3<V>* b, const PairLimits<V>& x,
-                                             V* edges_square = nullptr) noexcept {
+AXG_HD typename lanes::Traits<V>::Mask apart_by_itself(typename lanes::Traits<V>::Mask told,
+                                                       const V3<V>* a, const V3<V>* b,
+                                                       const PairLimits<V>& x,
+                                                       V* edges_square = nullptr) noexcept {
     using lanes::all, lanes::either;
-    auto told = separated_shared<kMargin, true>(a, b, x.d, x.r_square);
-    if (all(told)) {
-        return told;
-    }
     const TrianglePair<V> p = scaled_pair(a, b, x.d);
     if constexpr (kTriesAxes) {
         told = either(told, separated_17<kMargin>(p, x.margin));
@@ -69,6 +65,18 @@ AXG_HD typename lanes::Traits<V>::Mask apart(const V3<V>* a, const V3<V>* b, con
         }
     }
     return told;
+}
+
+/// True only where every point of a is more than r from every point of b (kMargin false: r = 0).
+/// @tparam kTriesAxes  whether all seventeen axes are tried by themselves
+/// @param a, b          [3] local vertices, |coordinate| <= 2^20 mm
+/// @param edges_square  kMargin: as of closest_direction, where any lane is not apart; may be null
+template <bool kMargin, bool kTriesAxes = !kMargin || kTriesAxesWithMargin, class V>
+AXG_HD typename lanes::Traits<V>::Mask apart(const V3<V>* a, const V3<V>* b, const PairLimits<V>& x,
+                                             V* edges_square = nullptr) noexcept {
+    const auto told = separated_shared<kMargin, true>(a, b, x.d, x.r_square);
+    return lanes::all(told) ? told
+                            : apart_by_itself<kMargin, kTriesAxes>(told, a, b, x, edges_square);
 }
 
 }  // namespace axg::sat

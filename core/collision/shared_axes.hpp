@@ -28,6 +28,15 @@ AXG_HD EdgePair<V> edges_of(const V3<V>* a, const V3<V>* b) noexcept {
         {sub(a[1], a[0]), sub(a[2], a[0])}, {sub(b[1], b[0]), sub(b[2], b[0])}, sub(b[0], a[0])};
 }
 
+/// What the axes take of one triangle by itself, whatever it is tested against.
+template <class V>
+struct TriangleAxes {
+    V3<V> edge[2], normal;
+    V squares[3];  // e0.e0, e0.e1, e1.e1
+    V area;        // square of the normal
+    V reach;       // largest |coordinate| of the edges
+};
+
 template <class V>
 AXG_HD V largest(const V3<V>& a) noexcept {
     using lanes::abs, lanes::max;
@@ -46,6 +55,11 @@ AXG_HD V area_square(V a, V b, V c) noexcept {
     return lanes::fma(a, c, -(b * b));
 }
 
+template <class V>
+AXG_HD V reach_of_edges(const V3<V> (&e)[2]) noexcept {
+    return lanes::max(largest(e[0]), largest(e[1]));
+}
+
 /// By how much a computed gap may exceed the true one, for each kind of axis.
 template <class V>
 struct SharedBounds {
@@ -53,15 +67,17 @@ struct SharedBounds {
     V normal_a, normal_b, twice_cross, in_plane_a, in_plane_b;
 };
 
+/// @param alpha  largest |coordinate| of a's edges; beta of b's
 /// @param start  a's first vertex: with the edges it bounds every coordinate
 /// @param d      errors of the vertices, as scale_of takes them
 template <class V>
-AXG_HD SharedBounds<V> shared_bounds(const EdgePair<V>& p, const V3<V>& start, V d) noexcept {
+AXG_HD SharedBounds<V> shared_bounds(const EdgePair<V>& p, V alpha, V beta, const V3<V>& start,
+                                     V d) noexcept {
     using lanes::fma, lanes::max, lanes::Traits;
     const V tiny = Traits<V>::of(16.0 * double(Traits<V>::kTiny)), eight = Traits<V>::of(8.0);
     SharedBounds<V> s;
-    s.alpha = max(largest(p.e[0]), largest(p.e[1]));
-    s.beta = max(largest(p.f[0]), largest(p.f[1]));
+    s.alpha = alpha;
+    s.beta = beta;
     constexpr double kUnit = double(Traits<V>::kUnit);
     const V sum = s.alpha + s.beta + largest(p.d);
     const V tau = fma(Traits<V>::of(12.5 * kUnit), largest(start) + sum,
@@ -72,6 +88,11 @@ AXG_HD SharedBounds<V> shared_bounds(const EdgePair<V>& p, const V3<V>& start, V
     s.in_plane_a = fma(eight * s.alpha, s.normal_a, tiny);
     s.in_plane_b = fma(eight * s.beta, s.normal_b, tiny);
     return s;
+}
+
+template <class V>
+AXG_HD SharedBounds<V> shared_bounds(const EdgePair<V>& p, const V3<V>& start, V d) noexcept {
+    return shared_bounds(p, reach_of_edges(p.e), reach_of_edges(p.f), start, d);
 }
 
 template <class V>
@@ -96,10 +117,12 @@ AXG_HD void twice_cross_gaps(const V (&g)[2][2], const V (&nf)[2], const V (&me)
                              V (&gaps)[3][3]) noexcept {
     using lanes::abs;
     const V n[3] = {nf[0], nf[1], nf[1] - nf[0]}, m[3] = {me[0], me[1], me[1] - me[0]};
+    AXG_UNROLL(V)
     for (int i = 0; i < 3; ++i) {
         const V d0 = i < 2 ? g[i % 2][0] : g[1][0] - g[0][0];
         const V d1 = i < 2 ? g[i % 2][1] : g[1][1] - g[0][1];
         const V d[3] = {d0, d1, d1 - d0};
+        AXG_UNROLL(V)
         for (int j = 0; j < 3; ++j) {
             // a projects to 0 and -+n[j], b to d and d +- m[i]: distance of the middles less half
             // the lengths, doubled.
@@ -141,19 +164,26 @@ struct EdgeProducts {
     V area_a, area_b;  // squares of the normals
 };
 
+/// Of two edges: e0.e0, e0.e1, e1.e1.
 template <class V>
-AXG_HD EdgeProducts<V> products_of(const EdgePair<V>& p) noexcept {
-    EdgeProducts<V> x;
+AXG_HD void edge_products(const V3<V> (&e)[2], V (&out)[3]) noexcept {
+    AXG_UNROLL(V)
     for (int i = 0; i < 3; ++i) {
-        x.ee[i] = dot3(p.e[i / 2], p.e[(i + 1) / 2]);
-        x.ff[i] = dot3(p.f[i / 2], p.f[(i + 1) / 2]);
+        out[i] = dot3(e[i / 2], e[(i + 1) / 2]);
     }
-    for (int i = 0; i < 2; ++i) {
-        x.ef[i][0] = dot3(p.e[i], p.f[0]), x.ef[i][1] = dot3(p.e[i], p.f[1]);
-    }
-    x.area_a = area_square(x.ee[0], x.ee[1], x.ee[2]);
-    x.area_b = area_square(x.ff[0], x.ff[1], x.ff[2]);
-    return x;
+}
+
+/// The axis data of a triangle, to be used for every triangle that it is tested against.
+/// @param v  [3] its vertices
+template <class V>
+AXG_HD TriangleAxes<V> axes_of_triangle(const V3<V>* v) noexcept {
+    TriangleAxes<V> t;
+    t.edge[0] = sub(v[1], v[0]), t.edge[1] = sub(v[2], v[0]);
+    t.normal = plain_cross(t.edge[0], t.edge[1]);
+    edge_products(t.edge, t.squares);
+    t.area = area_square(t.squares[0], t.squares[1], t.squares[2]);
+    t.reach = reach_of_edges(t.edge);
+    return t;
 }
 
 /// What the normals n of a and m of b have in common with the edges of the other triangle.
@@ -163,13 +193,76 @@ struct NormalProducts {
 };
 
 template <class V>
-AXG_HD NormalProducts<V> normal_products(const EdgePair<V>& p) noexcept {
-    const V3<V> n = plain_cross(p.e[0], p.e[1]), m = plain_cross(p.f[0], p.f[1]);
+AXG_HD NormalProducts<V> normal_products(const EdgePair<V>& p, const V3<V>& n,
+                                         const V3<V>& m) noexcept {
     return {{dot3(n, p.f[0]), dot3(n, p.f[1])},
             {dot3(m, p.e[0]), dot3(m, p.e[1])},
             dot3(n, p.d),
             dot3(m, p.d)};
 }
+
+template <class V>
+AXG_HD NormalProducts<V> normal_products(const EdgePair<V>& p) noexcept {
+    return normal_products(p, plain_cross(p.e[0], p.e[1]), plain_cross(p.f[0], p.f[1]));
+}
+
+template <class V>
+AXG_HD void mixed_products(const EdgePair<V>& p, EdgeProducts<V>& x) noexcept {
+    AXG_UNROLL(V)
+    for (int i = 0; i < 2; ++i) {
+        x.ef[i][0] = dot3(p.e[i], p.f[0]), x.ef[i][1] = dot3(p.e[i], p.f[1]);
+    }
+}
+
+template <class V>
+AXG_HD EdgeProducts<V> products_of(const EdgePair<V>& p) noexcept {
+    EdgeProducts<V> x;
+    edge_products(p.e, x.ee);
+    edge_products(p.f, x.ff);
+    mixed_products(p, x);
+    x.area_a = area_square(x.ee[0], x.ee[1], x.ee[2]);
+    x.area_b = area_square(x.ff[0], x.ff[1], x.ff[2]);
+    return x;
+}
+
+/// Axis data worked out for the pair at hand, each where it is first needed.
+struct ComputedAxes {
+    template <class V>
+    AXG_HD SharedBounds<V> bounds(const EdgePair<V>& p, const V3<V>& start, V d) const noexcept {
+        return shared_bounds(p, start, d);
+    }
+    template <class V>
+    AXG_HD NormalProducts<V> normals(const EdgePair<V>& p) const noexcept {
+        return normal_products(p);
+    }
+    template <class V>
+    AXG_HD EdgeProducts<V> products(const EdgePair<V>& p) const noexcept {
+        return products_of(p);
+    }
+};
+
+/// Axis data of both triangles, worked out before. The same numbers.
+template <class V>
+struct StoredAxes {
+    TriangleAxes<V> a, b;
+
+    AXG_HD SharedBounds<V> bounds(const EdgePair<V>& p, const V3<V>& start, V d) const noexcept {
+        return shared_bounds(p, a.reach, b.reach, start, d);
+    }
+    AXG_HD NormalProducts<V> normals(const EdgePair<V>& p) const noexcept {
+        return normal_products(p, a.normal, b.normal);
+    }
+    AXG_HD EdgeProducts<V> products(const EdgePair<V>& p) const noexcept {
+        EdgeProducts<V> x;
+        AXG_UNROLL(V)
+        for (int i = 0; i < 3; ++i) {
+            x.ee[i] = a.squares[i], x.ff[i] = b.squares[i];
+        }
+        mixed_products(p, x);
+        x.area_a = a.area, x.area_b = b.area;
+        return x;
+    }
+};
 
 template <class V>
 AXG_HD SharedGaps<V> gaps_of(const EdgePair<V>& p, const NormalProducts<V>& y,
@@ -179,6 +272,7 @@ AXG_HD SharedGaps<V> gaps_of(const EdgePair<V>& p, const NormalProducts<V>& y,
     s.normal_b = normal_gap(-y.md, y.me[0], y.me[1]);
     const V3<V> twice = {p.d.x + p.d.x, p.d.y + p.d.y, p.d.z + p.d.z};
     V g[2][2];
+    AXG_UNROLL(V)
     for (int i = 0; i < 2; ++i) {
         const V3<V> c = plain_cross(twice, p.e[i]);  // (d x e).f = (e x f).d
         g[i][0] = dot3(c, p.f[0]), g[i][1] = dot3(c, p.f[1]);
@@ -197,6 +291,7 @@ AXG_HD typename lanes::Traits<V>::Mask touching_excluded(const SharedGaps<V>& g,
                                                          const SharedBounds<V>& s) noexcept {
     using lanes::either, lanes::greater, lanes::max;
     V cross = g.twice_cross[0][0];
+    AXG_UNROLL(V)
     for (int i = 1; i < 9; ++i) {
         cross = max(cross, g.twice_cross[i / 3][i % 3]);
     }
@@ -239,10 +334,12 @@ AXG_HD typename lanes::Traits<V>::Mask margin_excluded(const SharedGaps<V>& g,
     auto apart = either(exceeds(g.normal_a, s.normal_a, r_square, area_a),
                         exceeds(g.normal_b, s.normal_b, r_square, area_b));
     const V slack = fma(Traits<V>::of(2048.0 * kUnit) * aa, bb, tiny), four_r = four * r_square;
+    AXG_UNROLL(V)
     for (int i = 0; i < 3; ++i) {
         const V xy0 = i < 2 ? x.ef[i % 2][0] : x.ef[1][0] - x.ef[0][0];
         const V xy1 = i < 2 ? x.ef[i % 2][1] : x.ef[1][1] - x.ef[0][1];
         const V xy[3] = {xy0, xy1, xy1 - xy0};
+        AXG_UNROLL(V)
         for (int j = 0; j < 3; ++j) {
             const V square = fma(xx[i], yy[j], fma(-xy[j], xy[j], slack));
             apart = either(apart, exceeds(g.twice_cross[i][j], s.twice_cross, four_r, square));
@@ -258,15 +355,15 @@ AXG_HD typename lanes::Traits<V>::Mask margin_excluded(const SharedGaps<V>& g,
 /// True only where the triangles share no point (kMargin: are more than r apart). All seventeen
 /// axes; without a margin, kLeavesEarly, the normals alone where they settle every lane, which does
 /// not change the result.
-/// @param a, b      [3] local vertices, |coordinate| <= 2^20 mm
+/// @param start     a's first vertex; |coordinate| of all vertices <= 2^20 mm
+/// @param data      ComputedAxes or StoredAxes: one result
 /// @param d         errors of the vertices, as scale_of takes them
 /// @param r_square  kMargin: at least r^2 (1 + 2^-18)
-template <bool kMargin, bool kLeavesEarly, class V>
-AXG_HD typename lanes::Traits<V>::Mask separated_shared(const V3<V>* a, const V3<V>* b, V d,
-                                                        V r_square) noexcept {
-    const EdgePair<V> p = edges_of(a, b);
-    const SharedBounds<V> bounds = shared_bounds(p, a[0], d);
-    const NormalProducts<V> normals = normal_products(p);
+template <bool kMargin, bool kLeavesEarly, class V, class Data>
+AXG_HD typename lanes::Traits<V>::Mask separated_edges(const EdgePair<V>& p, const V3<V>& start,
+                                                       const Data& data, V d, V r_square) noexcept {
+    const SharedBounds<V> bounds = data.bounds(p, start, d);
+    const NormalProducts<V> normals = data.normals(p);
     if constexpr (kLeavesEarly && !kMargin) {
         using lanes::either, lanes::greater;
         const auto told =
@@ -276,13 +373,22 @@ AXG_HD typename lanes::Traits<V>::Mask separated_shared(const V3<V>* a, const V3
             return told;
         }
     }
-    const EdgeProducts<V> products = products_of(p);
+    const EdgeProducts<V> products = data.products(p);
     const SharedGaps<V> gaps = gaps_of(p, normals, products);
     if constexpr (kMargin) {
         return margin_excluded(gaps, bounds, products, r_square);
     } else {
         return touching_excluded(gaps, bounds);
     }
+}
+
+/// The same of two triangles.
+/// @param a, b  [3] local vertices
+template <bool kMargin, bool kLeavesEarly, class V>
+AXG_HD typename lanes::Traits<V>::Mask separated_shared(const V3<V>* a, const V3<V>* b, V d,
+                                                        V r_square) noexcept {
+    return separated_edges<kMargin, kLeavesEarly>(edges_of(a, b), a[0], ComputedAxes{}, d,
+                                                  r_square);
 }
 
 }  // namespace axg::sat

@@ -4,8 +4,8 @@
 
 namespace axg {
 
-std::optional<WorstCaseMeasurement> measure_worst_case(const Capacities&, const CudaOptions&,
-                                                       const WorstCaseCycle&, std::string& fault) {
+std::optional<WorstCaseMeasurement> measure_worst_case(const CudaOptions&, const WorstCaseCycle&,
+                                                       std::string& fault) {
     fault = kNoCudaInThisBuild;
     return std::nullopt;
 }

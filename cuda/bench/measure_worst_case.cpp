@@ -2,7 +2,11 @@
 #include "cuda/bench/measure_worst_case.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <memory>
+#include <span>
+#include <utility>
 
 #include "core/worst_case/worst_case_batch.hpp"
 #include "cuda/bench/batch_work.hpp"
@@ -96,29 +100,117 @@ class Hog {
 };
 
 constexpr std::uint32_t kAmple = 1U << 30U;
+constexpr std::size_t kNoLayout = kWorstCaseLayouts.size();
+
+/// A call in one layout, ready to be run.
+struct Filled {
+    WorstCaseBatch batch;
+    std::vector<GroupWork> groups, work;  // as the call begins with them, and as it left them
+    std::vector<QueryResult> results;
+};
+
+/// Calls of a cycle, in their order.
+using FilledCycle = std::vector<Filled*>;
 
 /// One group of them all, or none. Of an exact layout the batch's own size is the end of its lists.
-std::vector<GroupWork> groups_of(const Capacities& capacities, const WorstCaseCycle& cycle,
-                                 WorstCaseLayout layout) {
-    const BatchCapacities& batch = capacities.batch;
+std::vector<GroupWork> groups_of(const WorstCaseCall& call, WorstCaseLayout layout) {
+    const BatchCapacities& batch = call.capacities.batch;
     const WorkLists lists{batch.level_pairs, batch.leaf_pairs, batch.box_rows, batch.triangle_pairs,
                           batch.rechecks};
     const bool is_exact = layout != WorstCaseLayout::overflowing;
     const WorkLists share = is_exact ? WorkLists{kAmple, kAmple, kAmple, kAmple, kAmple} : lists;
-    return std::vector<GroupWork>(cycle.is_stage ? 1 : 0, {.share = share});
+    return std::vector<GroupWork>(call.is_stage ? 1 : 0, {.share = share});
+}
+
+/// One engine's bodies: those of `more` behind those that are there.
+void append(TreeBodies& bodies, WorstCaseBatch& more) {
+    const auto first = static_cast<std::uint32_t>(bodies.trees.size());
+    for (Query& query : more.queries) {
+        query.mesh_a += first;
+        query.mesh_b += first;
+    }
+    bodies.tree_levels = std::max(bodies.tree_levels, more.bodies.tree_levels);
+    for (std::size_t i = 0; i < more.bodies.trees.size(); ++i) {
+        bodies.trees.push_back(std::move(more.bodies.trees[i]));
+        bodies.reach_mm.push_back(more.bodies.reach_mm[i]);
+    }
+}
+
+/// An engine's lists: of several calls the longest of each.
+Capacities longest_of(const WorstCaseCycle& cycle) {
+    Capacities out = cycle.calls.front().capacities;
+    for (const WorstCaseCall& call : cycle.calls) {
+        const BatchCapacities& batch = call.capacities.batch;
+        const auto take = [](std::uint32_t& to, std::uint32_t from) { to = std::max(to, from); };
+        take(out.batch.level_pairs, batch.level_pairs);
+        take(out.batch.leaf_pairs, batch.leaf_pairs);
+        take(out.batch.box_rows, batch.box_rows);
+        take(out.batch.triangle_pairs, batch.triangle_pairs);
+        take(out.batch.rechecks, batch.rechecks);
+    }
+    return out;
+}
+
+/// Every call of the cycle in every layout, over the bodies of one engine.
+class Fillings {
+  public:
+    /// Empty, or why these capacities cannot be filled.
+    std::string make(const WorstCaseCycle& cycle, std::uint32_t queries_max) {
+        for (const WorstCaseLayout layout : kWorstCaseLayouts) {
+            for (const WorstCaseCall& call : cycle.calls) {
+                Filled& filled = *filled_.emplace_back(std::make_unique<Filled>());
+                const std::uint32_t queries = std::min(call.queries, queries_max);
+                if (std::string fault = make_worst_case_batch(
+                        call.capacities, queries, cycle.tree_levels, layout, filled.batch);
+                    !fault.empty()) {
+                    return fault;
+                }
+                append(bodies, filled.batch);
+                filled.groups = groups_of(call, layout);
+                filled.work = filled.groups;
+                filled.results.resize(queries);
+            }
+        }
+        return {};
+    }
+    [[nodiscard]] Filled& at(std::size_t layout, std::size_t call) const {
+        const std::size_t calls = filled_.size() / kWorstCaseLayouts.size();
+        return *filled_[layout * calls + call];
+    }
+    /// Naming what touches is work too.
+    void list_touching(std::span<TriangleIds> list) {
+        for (const std::unique_ptr<Filled>& filled : filled_) {
+            for (Query& query : filled->batch.queries) {
+                query.list = list;
+            }
+        }
+    }
+
+    TreeBodies bodies;
+
+  private:
+    std::vector<std::unique_ptr<Filled>> filled_;
+};
+
+void run(CudaEngine& engine, Filled& filled) {
+    std::copy(filled.groups.begin(), filled.groups.end(), filled.work.begin());
+    engine.run(filled.batch.queries, filled.results, filled.work);
 }
 
 /// The batch did what it was made for: an exact layout fills every list, an overflowing one leaves
 /// every query unproven.
-std::string wrong_work(CudaEngine& engine, const WorstCaseBatch& worst_case, WorstCaseLayout layout,
-                       const std::vector<QueryResult>& results) {
+std::string wrong_work(CudaEngine& engine, Filled& filled, WorstCaseLayout layout) {
+    run(engine, filled);
+    if (engine.fault() != nullptr) {
+        return engine.fault();
+    }
     std::string fault;
     const BatchWork work = last_work(engine.parts(), fault);
     const bool is_exact = layout != WorstCaseLayout::overflowing;
-    if (fault.empty() && is_exact && work != worst_case.work) {
+    if (fault.empty() && is_exact && work != filled.batch.work) {
         fault = "the longest batch did other work than it was made for: a bug";
     }
-    for (const QueryResult& result : results) {
+    for (const QueryResult& result : filled.results) {
         const bool is_right =
             is_exact ? result.status == QueryStatus::ok : is_overflow(result.status);
         if (fault.empty() && !is_right) {
@@ -128,25 +220,28 @@ std::string wrong_work(CudaEngine& engine, const WorstCaseBatch& worst_case, Wor
     return fault;
 }
 
-/// Empty, or why this condition could not be measured.
-std::string measure_line(CudaEngine& engine, const WorstCaseBatch& worst_case,
-                         const std::vector<GroupWork>& groups, std::uint32_t launches,
-                         Condition condition, Hog& hog, std::uint32_t count,
+/// Cycles beside something. What they took is added to `line`, and the time of each call to
+/// `spent_us`. Empty, or why they could not be measured.
+std::string measure_line(CudaEngine& engine, const WorstCaseCycle& cycle, const FilledCycle& filled,
+                         Condition condition, Hog& hog, std::vector<double>& spent_us,
                          WorstCaseMeasurement::Line& line) {
-    std::vector<GroupWork> work = groups;
-    std::vector<QueryResult> results(worst_case.queries.size());
+    const std::uint32_t count = std::max(1U, cycle.count / 3);
     line.cycle_us.reserve(count);
     for (std::uint32_t i = 0; i < count && engine.fault() == nullptr; ++i) {
         if (!hog.prepare(condition, static_cast<int>(i))) {
             return "the GPU has no room for what the longest batch is measured beside";
         }
         const Clock::time_point start = Clock::now();
-        for (std::uint32_t launch = 0; launch < launches; ++launch) {
-            std::copy(groups.begin(), groups.end(), work.begin());
-            engine.run(worst_case.queries, results, work);
+        Clock::time_point from = start;
+        for (std::size_t call = 0; call < filled.size(); ++call) {
+            for (std::uint32_t times = 0; times < cycle.calls[call].times; ++times) {
+                run(engine, *filled[call]);
+            }
+            const Clock::time_point now = Clock::now();
+            spent_us[call] += std::chrono::duration<double, std::micro>(now - from).count();
+            from = now;
         }
-        const std::chrono::duration<double, std::micro> spent = Clock::now() - start;
-        line.cycle_us.push_back(spent.count());
+        line.cycle_us.push_back(std::chrono::duration<double, std::micro>(from - start).count());
         if (!hog.wait()) {
             return "the GPU failed while the longest batch was measured";
         }
@@ -154,40 +249,15 @@ std::string measure_line(CudaEngine& engine, const WorstCaseBatch& worst_case,
     return engine.fault() == nullptr ? std::string() : engine.fault();
 }
 
-std::string measure_layout(const Capacities& capacities, const CudaOptions& options,
-                           WorstCaseLayout layout, std::optional<Hog>& hog,
-                           WorstCaseMeasurement& out) {
-    WorstCaseBatch worst_case;
-    const std::uint32_t queries =
-        std::min(out.cycle.queries, std::clamp(options.queries_max, 1U, kBatchQueriesMax));
-    std::string fault =
-        make_worst_case_batch(capacities, queries, out.cycle.tree_levels, layout, worst_case);
-    if (!fault.empty()) {
-        return fault;
-    }
-    std::optional<CudaEngine> engine =
-        CudaEngine::Parts::engine_over(worst_case.bodies, capacities, options, fault);
-    if (!engine) {
-        return fault;
-    }
-    if (!hog) {
-        hog.emplace();
-    }
-    out.device = engine->device();
-    std::vector<TriangleIds> list(engine->parts().buffers.limits.listed);
-    for (Query& query : worst_case.queries) {
-        query.list = list;  // naming what touches is work too
-    }
-    std::vector<QueryResult> results(worst_case.queries.size());
-    const std::vector<GroupWork> groups = groups_of(capacities, out.cycle, layout);
-    std::vector<GroupWork> work = groups;
-    engine->run(worst_case.queries, results, work);
-    fault = engine->fault() == nullptr ? wrong_work(*engine, worst_case, layout, results) : "";
+/// Under each condition; the time of each call, all together, in `spent_us`.
+std::string measure_conditions(CudaEngine& engine, const FilledCycle& filled, const char* layout,
+                               Hog& hog, std::vector<double>& spent_us, WorstCaseMeasurement& out) {
+    std::string fault;
+    spent_us.assign(filled.size(), 0);
     for (const Condition condition : kConditions) {
-        WorstCaseMeasurement::Line line{name_of(layout), name_of(condition), {}};
+        WorstCaseMeasurement::Line line{layout, name_of(condition), {}};
         if (fault.empty()) {
-            fault = measure_line(*engine, worst_case, groups, out.cycle.launches, condition, *hog,
-                                 std::max(1U, out.cycle.count / 3), line);
+            fault = measure_line(engine, out.cycle, filled, condition, hog, spent_us, line);
         }
         for (const double us : line.cycle_us) {
             out.us_max = std::max(out.us_max, us);
@@ -197,22 +267,67 @@ std::string measure_layout(const Capacities& capacities, const CudaOptions& opti
     return fault;
 }
 
+/// All calls in one layout after the other; then, where they are not the same, each call in the
+/// layout in which it took longest.
+std::string measure_layouts(CudaEngine& engine, const Fillings& fillings, Hog& hog,
+                            WorstCaseMeasurement& out) {
+    const std::size_t calls = out.cycle.calls.size();
+    std::vector<double> spent_us(calls), longest_us(calls, -1);
+    std::vector<std::size_t> slowest(calls, kNoLayout);
+    FilledCycle filled(calls);
+    for (std::size_t layout = 0; layout < kWorstCaseLayouts.size(); ++layout) {
+        for (std::size_t call = 0; call < calls; ++call) {
+            filled[call] = &fillings.at(layout, call);
+            if (std::string fault = wrong_work(engine, *filled[call], kWorstCaseLayouts[layout]);
+                !fault.empty()) {
+                return fault;
+            }
+        }
+        if (std::string fault = measure_conditions(
+                engine, filled, name_of(kWorstCaseLayouts[layout]), hog, spent_us, out);
+            !fault.empty()) {
+            return fault;
+        }
+        for (std::size_t call = 0; call < calls; ++call) {
+            if (spent_us[call] > longest_us[call]) {
+                longest_us[call] = spent_us[call];
+                slowest[call] = layout;
+            }
+        }
+    }
+    if (std::all_of(slowest.begin(), slowest.end(),
+                    [&slowest](std::size_t layout) { return layout == slowest.front(); })) {
+        return {};
+    }
+    for (std::size_t call = 0; call < calls; ++call) {
+        filled[call] = &fillings.at(slowest[call], call);
+    }
+    return measure_conditions(engine, filled, "slowest", hog, spent_us, out);
+}
+
 }  // namespace
 
-std::optional<WorstCaseMeasurement> measure_worst_case(const Capacities& capacities,
-                                                       const CudaOptions& options,
+std::optional<WorstCaseMeasurement> measure_worst_case(const CudaOptions& options,
                                                        const WorstCaseCycle& cycle,
                                                        std::string& fault) {
     WorstCaseMeasurement out;
     out.cycle = cycle;
-    std::optional<Hog> hog;
-    for (const WorstCaseLayout layout : kWorstCaseLayouts) {
-        fault = measure_layout(capacities, options, layout, hog, out);
-        if (!fault.empty()) {
-            return std::nullopt;
-        }
+    Fillings fillings;
+    fault = fillings.make(cycle, std::clamp(options.queries_max, 1U, kBatchQueriesMax));
+    if (!fault.empty()) {
+        return std::nullopt;
     }
-    return out;
+    std::optional<CudaEngine> engine =
+        CudaEngine::Parts::engine_over(fillings.bodies, longest_of(cycle), options, fault);
+    if (!engine) {
+        return std::nullopt;
+    }
+    out.device = engine->device();
+    std::vector<TriangleIds> list(engine->parts().buffers.limits.listed);
+    fillings.list_touching(list);
+    Hog hog;
+    fault = measure_layouts(*engine, fillings, hog, out);
+    return fault.empty() ? std::optional(std::move(out)) : std::nullopt;
 }
 
 }  // namespace axg

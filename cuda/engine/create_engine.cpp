@@ -203,7 +203,7 @@ bool sum_trees(CudaEngine::Parts& parts, const Trees& trees, std::string& fault)
                    "sums of the trees", fault);
 }
 
-cudaError_t launch_batch(const DeviceBuffers& b, const Launch& launch) {
+cudaError_t launch_batch(const DeviceBuffers& b, const Launch& launch, LaunchLeaves leaves) {
     const bool measures = b.limits.measures;
     cudaError_t error = launch_prepare_queries(b, launch);
     const auto next = [&error](cudaError_t status) {
@@ -215,7 +215,8 @@ cudaError_t launch_batch(const DeviceBuffers& b, const Launch& launch) {
     for (std::uint32_t tree_level = 0; tree_level < b.limits.tree_levels; ++tree_level) {
         next(launch_open_pairs(b, launch, tree_level));
     }
-    next(launch_test_leaves(b, launch));
+    next(leaves != nullptr ? static_cast<cudaError_t>(leaves(b, launch))
+                           : launch_test_leaves(b, launch));
     if (measures) {
         next(launch_measure_leaves(b, launch));
     }
@@ -229,8 +230,8 @@ cudaError_t launch_batch(const DeviceBuffers& b, const Launch& launch) {
     return error;
 }
 
-bool record(const CudaEngine::Parts& parts, const DeviceLimits& limits, BatchGraph& out,
-            std::string& fault) {
+bool record(const CudaEngine::Parts& parts, const DeviceLimits& limits, LaunchLeaves leaves,
+            BatchGraph& out, std::string& fault) {
     int capability = 0;
     if (failed(cudaDeviceGetAttribute(&capability, cudaDevAttrComputeCapabilityMajor, 0),
                "compute capability", fault)) {
@@ -244,7 +245,7 @@ bool record(const CudaEngine::Parts& parts, const DeviceLimits& limits, BatchGra
     }
     DeviceBuffers buffers = parts.buffers;
     buffers.limits = limits;
-    const cudaError_t launched = launch_batch(buffers, launch);
+    const cudaError_t launched = launch_batch(buffers, launch, leaves);
     return !failed(cudaStreamEndCapture(launch.stream, &out.graph), "recording the batch", fault) &&
            !failed(launched, "recording the batch", fault) &&
            !failed(cudaGraphInstantiate(&out.exec, out.graph, 0), "the batch's graph", fault) &&
@@ -306,9 +307,9 @@ std::optional<CudaEngine> CudaEngine::Parts::engine_over(const TreeBodies& bodie
     if (!reserve(*parts, trees, fault) || !sum_trees(*parts, trees, fault) ||
         // Copies and zeroes are on another stream than the batches.
         failed(cudaDeviceSynchronize(), "filling the memory", fault) ||
-        !record(*parts, parts->buffers.limits, parts->proofs, fault) ||
-        !record(*parts, parts->clearance_limits, parts->clearances, fault) ||
-        !record(*parts, parts->stage_limits, parts->stages, fault)) {
+        !record(*parts, parts->buffers.limits, options.launch_leaves, parts->proofs, fault) ||
+        !record(*parts, parts->clearance_limits, options.launch_leaves, parts->clearances, fault) ||
+        !record(*parts, parts->stage_limits, options.launch_leaves, parts->stages, fault)) {
         return std::nullopt;
     }
     // The first launch of a kernel loads it: every kernel runs once before the first cycle.

@@ -20,6 +20,15 @@
 
 namespace axg {
 
+namespace cuda {
+
+struct DeviceBuffers;
+struct Launch;
+/// Launches a kernel for pairs of leaves (cuda/bench/leaf_kernels.hpp); a cudaError_t.
+using LaunchLeaves = int (*)(const DeviceBuffers& buffers, const Launch& launch) noexcept;
+
+}  // namespace cuda
+
 /// The fault of everything here in a build without a CUDA compiler.
 inline constexpr const char* kNoCudaInThisBuild =
     "this build has no CUDA engine; build it where nvcc is on the path, or use --engine cpu";
@@ -35,6 +44,7 @@ struct CudaOptions {
     std::uint32_t listed = 64;            // a query: touching pairs told by name, at most
     std::uint32_t multiprocessors = 0;    // a partition of so many (a green context); 0: all
     std::uint32_t deadline_us = 100'000;  // of one launch, from its start to its last result
+    cuda::LaunchLeaves launch_leaves = nullptr;  // of a measurement; null: the engine's own kernel
 };
 
 /// What the engine reserves, byte by byte.

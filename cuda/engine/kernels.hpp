@@ -23,6 +23,12 @@ struct Launch {
     bool overlaps = false;  // a kernel may be set up while the one before it runs
 };
 
+/// Where the test of two triangles has its axis data from: edges, normals, squares and area of each
+/// triangle. computed: from the vertices, for every pair anew. cached: once a triangle and pair of
+/// leaves, in shared memory. prefetched: cached, and the next pair of leaves is on its way while
+/// this one is tested. All give the same bits.
+enum class AxisData : std::uint8_t { computed, cached, prefetched };
+
 /// Bytes of one PreparedQuery, which only device code knows.
 [[nodiscard]] std::size_t prepared_query_size_bytes() noexcept;
 

@@ -9,7 +9,7 @@ import sys
 from drawing import DARK, GREY, MID, RULE, STOP, Drawing
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-LEFT, SCALE, LIMIT_US = 176, 0.111, 900
+LEFT, SCALE, LIMIT_US = 176, 0.078, 900
 ROWS = {"one pose, eight pairs": MID, "longest batch, one level": "#7fa6cc",
         "longest cycle, nine launches": DARK}
 
@@ -28,7 +28,7 @@ def main():
     figure = Drawing("Predicted times of GPU cycles on Jetson boards", 372)
     figure.text(8, 18, "Predicted, not measured: longest cycles against 900 us of a 1 kHz deadline",
                 13, bold=True)
-    for us in range(0, 3501, 500):
+    for us in range(0, 5001, 1000):
         figure.line((LEFT + us * SCALE, 34), (LEFT + us * SCALE, 322), stroke=RULE)
         figure.text(LEFT + us * SCALE, 338, str(us), 11, "middle")
     y = 40

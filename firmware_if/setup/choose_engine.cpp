@@ -12,9 +12,9 @@
 #include "core/certificate/jog.hpp"
 #include "core/certificate/pair_queries.hpp"
 #include "core/machine/cycle_plan.hpp"
-#include "core/worst_case/worst_case_batch.hpp"
 #include "cuda/bench/measure_worst_case.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
+#include "firmware_if/setup/longest_gpu_cycle.hpp"
 #include "firmware_if/setup/travel_sample.hpp"
 
 namespace axg {
@@ -22,7 +22,6 @@ namespace {
 
 constexpr std::uint32_t kWorstCaseCycles = 150;  // of each layout
 constexpr std::uint32_t kPositions = 64, kPasses = 3;
-constexpr std::uint32_t kMoreRowsMax = 16;
 
 /// The slowest position's time for all checked pairs as one batch, each the least of some passes.
 double slowest_us(const Machine& machine, const Engine& engine) {
@@ -46,95 +45,24 @@ double slowest_us(const Machine& machine, const Engine& engine) {
     return slowest;
 }
 
-/// The longest launch of a call that may fill these lists, as often as the call takes. Empty: the
-/// reason is in `out`.
-std::optional<double> longest_call_us(const Capacities& capacities, WorstCaseCycle cycle,
-                                      const CudaOptions& options, ChosenEngine& out,
-                                      std::string& device) {
-    const std::uint32_t launches = (cycle.queries + options.queries_max - 1) / options.queries_max;
-    cycle.count = kWorstCaseCycles;
-    const std::optional<WorstCaseMeasurement> measured =
-        measure_worst_case(capacities, options, cycle, out.words);
-    if (!measured) {
-        out.refusal = EngineRefusal::no_gpu;
-        return std::nullopt;
-    }
-    device = name_of(measured->device);
-    return launches * measured->us_max;
-}
-
-/// A stage's lists as those of a batch. Its pairs of nodes lie on all levels together, the batch's
-/// on each: a batch of these comes to no less. Nor does one with more rows, where a batch that
-/// fills the other lists takes them.
-Capacities capacities_of(Capacities capacities, const WorkLists& lists,
-                         const WorstCaseCycle& cycle) {
-    BatchCapacities& batch = capacities.batch;
-    batch = {lists.node_pairs, lists.leaf_pairs, lists.box_rows, lists.triangle_pairs,
-             lists.rechecks};
-    const std::uint32_t queries = std::min(cycle.queries, CudaOptions{}.queries_max);
-    WorstCaseBatch made;
-    for (const WorstCaseLayout layout : {WorstCaseLayout::even, WorstCaseLayout::heaped}) {
-        for (std::uint32_t i = 0; i < kMoreRowsMax; ++i) {
-            if (make_worst_case_batch(capacities, queries, cycle.tree_levels, layout, made)
-                    .empty()) {
-                break;
-            }
-            batch.box_rows += batch.box_rows / 4 + 1;
-        }
-    }
-    return capacities;
-}
-
-/// All stages full, one behind the other, and the calls of a jog. Empty as above.
-std::optional<double> longest_cycle_us(const LoadedMachine& loaded, const CycleDemand& demand,
-                                       WorstCaseCycle cycle, const CudaOptions& options,
-                                       ChosenEngine& out, std::string& device) {
-    const Capacities& capacities = loaded.machine.capacities;
-    if (!demand.plan) {
-        cycle.queries = demand.queries;
-        return longest_call_us(capacities, cycle, options, out, device);
-    }
-    const CyclePlan& plan = *demand.plan;
-    cycle.is_stage = true;
-    double sum = 0;
-    for (std::uint32_t call = 0; call <= plan.stages; ++call) {
-        const bool is_jog = call == plan.stages;
-        const std::uint32_t times = is_jog ? demand.calls - plan.stages : 1;
-        const WorkLists lists = is_jog ? longest_lists(plan) : plan.lists[call];
-        cycle.queries = is_jog      ? demand.queries
-                        : call == 0 ? demand.tasks + 2
-                                    : plan.queries[call] + 2;
-        if (times == 0) {
-            continue;
-        }
-        const std::optional<double> us =
-            longest_call_us(capacities_of(capacities, lists, cycle), cycle, options, out, device);
-        if (!us) {
-            return std::nullopt;
-        }
-        sum += times * *us;
-    }
-    return sum;
-}
-
 /// Whether the longest cycle fits into the deadline; `words` say by how much, or what to change.
 bool is_admitted(const LoadedMachine& loaded, const CudaEngine& gpu, const CycleDemand& demand,
                  std::uint32_t multiprocessors, ChosenEngine& out) {
     CudaOptions options;
     options.multiprocessors = multiprocessors;
-    WorstCaseCycle cycle;
-    cycle.tree_levels = gpu.tree_levels();
-    std::string device;
-    const std::optional<double> longest_us =
-        longest_cycle_us(loaded, demand, cycle, options, out, device);
-    if (!longest_us) {
+    WorstCaseCycle cycle = longest_gpu_cycle(loaded.machine.capacities, demand, gpu.tree_levels());
+    cycle.count = kWorstCaseCycles;
+    const std::optional<WorstCaseMeasurement> measured =
+        measure_worst_case(options, cycle, out.words);
+    if (!measured) {
+        out.refusal = EngineRefusal::no_gpu;
         return false;
     }
-    out.longest_us = *longest_us;
+    out.longest_us = measured->us_max;
     out.words =
         fmt::format("{}: longest cycle ({} launches) {:.0f} us, limit {:.0f} us (deadline {} us)",
-                    device, demand.calls * demand.launches, out.longest_us, demand.times.engine_us,
-                    demand.times.deadline_us);
+                    name_of(measured->device), launches_of(cycle), out.longest_us,
+                    demand.times.engine_us, demand.times.deadline_us);
     if (out.longest_us <= demand.times.engine_us) {
         return true;
     }

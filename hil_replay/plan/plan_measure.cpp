@@ -14,6 +14,7 @@
 #include "cuda/bench/measure_worst_case.hpp"
 #include "firmware_if/setup/choose_engine.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
+#include "firmware_if/setup/longest_gpu_cycle.hpp"
 #include "firmware_if/setup/travel_sample.hpp"
 #include "hil_replay/replay/replay_run.hpp"
 #include "hil_replay/trace/trace_base.hpp"
@@ -242,19 +243,16 @@ bool measure_trace(LoadedMachine loaded, const ModelScene& scene, const Engine& 
     return true;
 }
 
-/// The constructed longest cycle of the machine's capacities.
+/// The constructed longest cycle of the machine's plan, as admission measures it.
 bool measure_longest(const LoadedMachine& loaded, const ModelScene& scene, const CudaEngine& gpu,
                      ModelMeasurement& out, std::string& fault) {
     CudaOptions options;
     options.multiprocessors = scene.multiprocessors;
-    const CycleDemand demand = cycle_demand(loaded.machine, true);
-    WorstCaseCycle cycle;
-    cycle.tree_levels = gpu.tree_levels();
-    cycle.launches = demand.launches;
-    cycle.queries = demand.queries;
+    WorstCaseCycle cycle = longest_gpu_cycle(loaded.machine.capacities,
+                                             cycle_demand(loaded.machine, true), gpu.tree_levels());
     cycle.count = kWorstCaseCycles;
-    const auto worst_case = measure_worst_case(loaded.machine.capacities, options, cycle, fault);
-    out.longest_us = worst_case ? demand.calls * worst_case->us_max : 0;
+    const auto worst_case = measure_worst_case(options, cycle, fault);
+    out.longest_us = worst_case ? worst_case->us_max : 0;
     return worst_case.has_value();
 }
 

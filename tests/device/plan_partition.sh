@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Plans the fine machine on a part of the GPU at hand, and replays its program on the model that
-# was chosen; the CPU beside it. Fewer guard.rounds, then shorter lists of a batch, are tried until
-# the longest cycle fits.
+# was chosen; the CPU beside it. Shorter lists of a cycle, then two stages, are tried until the
+# longest cycle fits.
 #   tests/device/plan_partition.sh BIN OUT [SMS]
 # BIN holds axguard and axg_make_fine_machine; OUT gets what they print. SMS: 8 unless stated.
 set -uo pipefail
@@ -44,15 +44,15 @@ replay() {
     grep -E 'longest|engine|us a cycle|permit|no stop' "$out/$4.txt" | head -12
 }
 
-# Half of what a batch may use unless stated (core/machine/machine.hpp), and a quarter of the
-# rechecks.
-half='level_pairs: 512, leaf_pairs: 512, box_rows: 3072, triangle_pairs: 8192, rechecks: 128'
-planned=""
-for lists in '' "batch: {$half}"; do
-    for rounds in 3 2 1; do
-        name=rounds$rounds${lists:+-half}
-        write_machine "$name.yaml" "guard: {rounds: $rounds}
-${lists:+capacities: {$lists\}}"
+# The lists of core/machine/cycle_work.hpp, and half of each.
+whole='node_pairs: 192, leaf_pairs: 240, box_rows: 3072, triangle_pairs: 1024'
+half='node_pairs: 96, leaf_pairs: 120, box_rows: 1536, triangle_pairs: 512'
+planned="" cycle=""
+for stages in 3 2; do
+    for lists in whole half; do
+        name=stages$stages-$lists
+        cycle="cycle: {stages: $stages, lists: {${!lists}, rechecks: 0}}"
+        write_machine "$name.yaml" "$cycle"
         if plan "$name.yaml" "gpu-$name" --engine cuda --sms "$sms"; then
             planned=$name
             break 2
@@ -67,14 +67,11 @@ fi
 words=$out/gpu-$planned.txt
 simplify=$(sed -n 's/^    simplify_mm: \([0-9.]*\) .*/\1/p' "$words")
 capacities=$(sed -n 's/^    capacities: {\(.*\)} .*/\1/p' "$words")
-questions=$(sed -n 's/^    guard: {\(questions: [0-9]*\)}.*/\1/p' "$words")
-guard="guard: {rounds: $rounds${questions:+, $questions}}"
-write_machine planned.yaml "$guard
-capacities: {${lists:+$lists, }$capacities}"
+write_machine planned.yaml "$cycle
+${capacities:+capacities: {$capacities\}}"
 [[ -z $simplify ]] || sed -i "s/unit: mm}/unit: mm, simplify_mm: $simplify}/" "$fine/planned.yaml"
 cp "$fine/planned.yaml" "$out/"
-write_machine whole.yaml "$guard
-${lists:+capacities: {$lists\}}"
+write_machine whole.yaml "$cycle"
 for mode in contact stoppable; do
     replay planned.yaml $mode cuda "replay-$mode-planned-gpu"
     replay planned.yaml $mode cpu "replay-$mode-planned-cpu"

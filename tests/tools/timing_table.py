@@ -12,8 +12,13 @@ import sys
 MEASURED_MHZ = 1980  # what the H200 says of itself; every record has it
 # Launch, queries over the bus, and the way back, of one launch (gpu-fill.txt, "Where it goes").
 LAUNCH_US = 11.3
-# Warps that issue one double instruction take 32 lanes / 2 a clock there, 32 / 64 on the H200.
+# Warps that issue one double instruction take 32 lanes / 2 a clock there, 32 / 64 on the GPU that
+# was measured; of a conversion from or to double 32 / 2 and 32 / 16.
 DOUBLE_CYCLES = 32 / 2 - 32 / 64
+CONVERSION_CYCLES = 32 / 2 - 32 / 16
+# What each kernel has an entry of: lists of gpu-double.json.
+ENTRIES = {"recheck_pairs": "rechecks", "test_leaves": "leaf_pairs", "open_pairs": "box_rows",
+           "prepare_queries": "queries"}
 # Name, multiprocessors of the partition that stands for it, MHz.
 BOARDS = [("Orin Nano 8 GB", 8, 625), ("Orin Nano 8 GB, Super", 8, 1020),
           ("Orin NX 16 GB", 8, 918), ("AGX Orin 64 GB", 16, 1300), ("Thor T5000", 16, 1575)]
@@ -52,11 +57,14 @@ def predicted_us(measured_us, launches, board_mhz):
     return max(0, measured_us - launches * LAUNCH_US) * share, measured_us * share
 
 
-def double_us(record, multiprocessors, board_mhz):
-    """What the double instructions of full lists take longer than they did."""
-    warps = {"recheck_pairs": record["rechecks"], "test_leaves": record["leaf_pairs"]}
-    issued = sum(record["instructions"][kernel] * count for kernel, count in warps.items())
-    return issued * DOUBLE_CYCLES / multiprocessors / board_mhz
+def double_us(instructions, lists, multiprocessors, board_mhz):
+    """What double arithmetic of full lists takes longer than it did."""
+    cycles = 0
+    for kernel, entries in ENTRIES.items():
+        count = lists[entries] / (32 if entries == "queries" else 1)
+        double, conversions = instructions[kernel]
+        cycles += count * (double * DOUBLE_CYCLES + conversions * CONVERSION_CYCLES)
+    return cycles / multiprocessors / board_mhz
 
 
 def table(folder):
@@ -71,8 +79,10 @@ def table(folder):
             cells.append(f"{low:.0f} to {high:.0f}")
         lines.append(f"| {name} | " + " | ".join(cells) + " |")
     double = json.loads((folder / "gpu-double.json").read_text())
-    cells = [f"{double_us(double, sms, mhz):.0f}" for _, sms, mhz in BOARDS]
-    lines.append("| full lists, more for double | " + " | ".join(cells) + " |")
+    for name, lists in double["lists"].items():
+        cells = [f"{double_us(double['instructions'], lists, sms, mhz):.0f}"
+                 for _, sms, mhz in BOARDS]
+        lines.append(f"| {name}, more for double | " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"
 
 

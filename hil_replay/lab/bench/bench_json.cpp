@@ -37,6 +37,39 @@ Json json_of(const WorkLists& lists) {
             {"rechecks", lists.rechecks}};
 }
 
+Json describe_call(const WorstCaseCall& call) {
+    const BatchCapacities& batch = call.capacities.batch;
+    Json out{{"times", call.times}, {"questions", call.queries}, {"is_stage", call.is_stage}};
+    out["lists"] = {{call.is_stage ? "node_pairs" : "level_pairs", batch.level_pairs},
+                    {"leaf_pairs", batch.leaf_pairs},
+                    {"box_rows", batch.box_rows},
+                    {"triangle_pairs", batch.triangle_pairs},
+                    {"rechecks", batch.rechecks}};
+    return out;
+}
+
+Json describe_measurement(const NamedMeasurement& named) {
+    const WorstCaseMeasurement& m = named.measured;
+    Json document{{"bench", "fill"},
+                  {"axis_data", named.name},
+                  {"levels", m.cycle.tree_levels},
+                  {"launches", launches_of(m.cycle)},
+                  {"us_max", m.us_max}};
+    for (const WorstCaseCall& call : m.cycle.calls) {
+        document["calls"].push_back(describe_call(call));
+    }
+    document["device"] = {{"name", m.device.name},
+                          {"multiprocessors", m.device.multiprocessors},
+                          {"multiprocessors_used", m.device.multiprocessors_used},
+                          {"clock_mhz", m.device.clock_khz / 1000},
+                          {"driver", m.device.driver},
+                          {"runtime", m.device.runtime}};
+    for (const WorstCaseMeasurement::Line& line : m.lines) {
+        document["lines"].push_back(describe_line(line));
+    }
+    return document;
+}
+
 Json json_of(const CycleTime& time) {
     return {{"wall", time.wall_us}, {"thread", time.cpu_us}};
 }
@@ -128,25 +161,13 @@ std::string describe_poses(const PoseMeasurement& m, std::uint32_t passes) {
                         {"us", m.us}});
 }
 
-std::string describe_worst_case(const WorstCaseMeasurement& m, const BatchCapacities& batch) {
-    Json document{{"bench", "fill"},
-                  {"questions", m.cycle.queries},
-                  {"levels", m.cycle.tree_levels},
-                  {"launches", m.cycle.launches},
-                  {"us_max", m.us_max}};
-    document["capacities"] = {{"level_pairs", batch.level_pairs},
-                              {"leaf_pairs", batch.leaf_pairs},
-                              {"box_rows", batch.box_rows},
-                              {"triangle_pairs", batch.triangle_pairs},
-                              {"rechecks", batch.rechecks}};
-    document["device"] = {{"name", m.device.name},
-                          {"multiprocessors", m.device.multiprocessors},
-                          {"multiprocessors_used", m.device.multiprocessors_used},
-                          {"clock_mhz", m.device.clock_khz / 1000},
-                          {"driver", m.device.driver},
-                          {"runtime", m.device.runtime}};
-    for (const WorstCaseMeasurement::Line& line : m.lines) {
-        document["lines"].push_back(describe_line(line));
+std::string describe_worst_case(const std::vector<NamedMeasurement>& all) {
+    if (all.size() == 1) {
+        return text_of(describe_measurement(all.front()));
+    }
+    Json document{{"bench", "fill"}, {"columns", Json::array()}};
+    for (const NamedMeasurement& named : all) {
+        document["columns"].push_back(describe_measurement(named));
     }
     return text_of(document);
 }

@@ -28,8 +28,14 @@ struct SceneMeasurement {
 /// @param passes  of which the least counts
 [[nodiscard]] std::string describe_poses(const PoseMeasurement& m, std::uint32_t passes);
 
-[[nodiscard]] std::string describe_worst_case(const WorstCaseMeasurement& m,
-                                              const BatchCapacities& batch);
+/// Measured with one kernel for pairs of leaves (cuda/bench/leaf_kernels.hpp).
+struct NamedMeasurement {
+    std::string name;
+    WorstCaseMeasurement measured;
+};
+
+/// One document, or of several measurements one in which each is a column.
+[[nodiscard]] std::string describe_worst_case(const std::vector<NamedMeasurement>& all);
 
 [[nodiscard]] std::string describe_cycles(const CycleMeasurement& m);
 

@@ -13,6 +13,7 @@
 
 #include "core/collision/cpu_engine.hpp"
 #include "core/machine/kinematics.hpp"
+#include "cuda/bench/leaf_kernels.hpp"
 #include "cuda/engine/cuda_engine.hpp"
 #include "firmware_if/cli/command_files.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
@@ -84,6 +85,11 @@ int measure_cuda(std::span<const Mesh* const> meshes, const std::vector<Query>& 
     CudaOptions cuda;
     cuda.multiprocessors = options.sms;
     cuda.queries_max = static_cast<std::uint32_t>(out.per_cycle);
+    for (const LeafKernel& kernel : leaf_kernels()) {
+        if (options.axis_data == kernel.name) {
+            cuda.launch_leaves = kernel.launch;
+        }
+    }
     std::string fault;
     std::optional<CudaEngine> engine = CudaEngine::create(meshes, Capacities{}, cuda, fault);
     if (!engine) {

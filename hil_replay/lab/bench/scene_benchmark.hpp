@@ -17,6 +17,7 @@ struct SceneBenchmarkOptions {
     double within_mm = 50.0, margin_mm = 0.0;
     std::uint32_t queries = 0;  // a cycle; 0: the pairs of one pose
     std::uint32_t sms = 0, cycles = 10000;
+    std::string axis_data = "computed";  // of cuda: a name of leaf_kernels()
     JsonOutput json;
 };
 

@@ -4,27 +4,43 @@
 #include <fmt/format.h>
 
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include "cuda/bench/leaf_kernels.hpp"
 #include "cuda/bench/measure_worst_case.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/setup/choose_engine.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
+#include "firmware_if/setup/longest_gpu_cycle.hpp"
 #include "hil_replay/lab/bench/bench_json.hpp"
 #include "hil_replay/replay/cycle_times.hpp"
 
 namespace axg {
 namespace {
 
-void print(const WorstCaseMeasurement& m, const BatchCapacities& batch, std::FILE* to) {
-    fmt::print(to,
-               "{}, {} of {} multiprocessors; {} queries in {} launches, {} levels\nlists of a "
-               "batch: {} node pairs per level, {} leaf pairs, {} box rows, {} triangle pairs, {} "
-               "rechecks\n\n{:<12} {:<14} {:>9} {:>9} {:>9} {:>9} {:>9}\n",
-               m.device.name, m.device.multiprocessors_used, m.device.multiprocessors,
-               m.cycle.queries, m.cycle.launches, m.cycle.tree_levels, batch.level_pairs,
-               batch.leaf_pairs, batch.box_rows, batch.triangle_pairs, batch.rechecks, "layout",
-               "beside it", "p50 us", "p99", "p99.9", "max", "3/N");
+void print_calls(const WorstCaseCycle& cycle, std::FILE* to) {
+    for (const WorstCaseCall& call : cycle.calls) {
+        const BatchCapacities& batch = call.capacities.batch;
+        fmt::print(to,
+                   "{} x {} queries{}; lists: {} node pairs{}, {} leaf pairs, {} box rows, {} "
+                   "triangle pairs, {} rechecks\n",
+                   call.times, call.queries, call.is_stage ? " of a stage" : "", batch.level_pairs,
+                   call.is_stage ? "" : " per level", batch.leaf_pairs, batch.box_rows,
+                   batch.triangle_pairs, batch.rechecks);
+    }
+}
+
+void print(const NamedMeasurement& named, std::FILE* to) {
+    const WorstCaseMeasurement& m = named.measured;
+    fmt::print(to, "{}, {} of {} multiprocessors; axis data {}; {} launches, {} levels\n",
+               m.device.name, m.device.multiprocessors_used, m.device.multiprocessors, named.name,
+               launches_of(m.cycle), m.cycle.tree_levels);
+    print_calls(m.cycle, to);
+    fmt::print(to, "\n{:<12} {:<14} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "layout", "beside it",
+               "p50 us", "p99", "p99.9", "max", "3/N");
     for (const WorstCaseMeasurement::Line& line : m.lines) {
         const CyclePercentiles us = percentiles_of(line.cycle_us);
         fmt::print(to, "{:<12} {:<14} {:>9.1f} {:>9.1f} {:>9.1f} {:>9.1f} {:>9.1e}\n", line.layout,
@@ -33,37 +49,77 @@ void print(const WorstCaseMeasurement& m, const BatchCapacities& batch, std::FIL
     fmt::print(to, "slowest of all: {:.1f} us\n", m.us_max);
 }
 
-}  // namespace
+/// p99 of every line, a column for each kernel.
+void print_columns(const std::vector<NamedMeasurement>& all, std::FILE* to) {
+    fmt::print(to, "\np99 us\n{:<12} {:<14}", "layout", "beside it");
+    for (const NamedMeasurement& named : all) {
+        fmt::print(to, " {:>10}", named.name);
+    }
+    for (const WorstCaseMeasurement::Line& line : all.front().measured.lines) {
+        fmt::print(to, "\n{:<12} {:<14}", line.layout, line.condition);
+        for (const NamedMeasurement& named : all) {
+            for (const WorstCaseMeasurement::Line& other : named.measured.lines) {
+                if (other.layout == line.layout && other.condition == line.condition) {
+                    fmt::print(to, " {:>10.1f}", percentiles_of(other.cycle_us).p99_us);
+                }
+            }
+        }
+    }
+    fmt::print(to, "\n");
+}
 
-int run_worst_case_benchmark(const WorstCaseBenchmarkOptions& options) {
-    Capacities capacities;
+/// What is measured. False: the machine cannot be read.
+bool make_cycle(const WorstCaseBenchmarkOptions& options, WorstCaseCycle& cycle) {
+    LoadedMachine loaded;
     std::uint32_t tree_levels = 2;
     if (!options.machine.empty()) {
-        LoadedMachine loaded;
         if (!load(options.machine, "", loaded, stderr)) {
-            return kExitInput;
+            return false;
         }
-        capacities = loaded.machine.capacities;
         tree_levels = tree_levels_of(loaded);
     }
     tree_levels = options.tree_levels != 0 ? options.tree_levels : tree_levels;
-    std::string fault;
+    if (options.stages == 0) {
+        cycle = batch_cycle(loaded.machine.capacities, options.launches);
+        cycle.tree_levels = tree_levels;
+    } else {
+        loaded.machine.cycle.stages = options.stages;
+        cycle = longest_gpu_cycle(loaded.machine.capacities, cycle_demand(loaded.machine, true),
+                                  tree_levels);
+    }
+    cycle.count = options.cycles;
+    return true;
+}
+
+}  // namespace
+
+int run_worst_case_benchmark(const WorstCaseBenchmarkOptions& options) {
+    WorstCaseCycle cycle;
+    if (!make_cycle(options, cycle)) {
+        return kExitInput;
+    }
     CudaOptions cuda;
     cuda.multiprocessors = options.sms;
-    WorstCaseCycle cycle;
-    cycle.tree_levels = tree_levels;
-    cycle.launches = options.launches;
-    cycle.count = options.cycles;
-    const std::optional<WorstCaseMeasurement> measured =
-        measure_worst_case(capacities, cuda, cycle, fault);
-    if (!measured) {
+    std::vector<NamedMeasurement> all;
+    std::string fault = leaf_kernels().empty() ? kNoCudaInThisBuild : "";
+    for (const LeafKernel& kernel : leaf_kernels()) {
+        if (!fault.empty() || (options.axis_data != "all" && options.axis_data != kernel.name)) {
+            continue;
+        }
+        cuda.launch_leaves = kernel.launch;
+        if (std::optional<WorstCaseMeasurement> measured = measure_worst_case(cuda, cycle, fault)) {
+            all.push_back({kernel.name, std::move(*measured)});
+            print(all.back(), options.json.words());
+        }
+    }
+    if (!fault.empty()) {
         fmt::print(stderr, "axguard-lab bench: {}\n", fault);
         return kExitGpu;
     }
-    print(*measured, capacities.batch, options.json.words());
-    return write_json(options.json, describe_worst_case(*measured, capacities.batch))
-               ? kExitClean
-               : kExitInternal;
+    if (all.size() > 1) {
+        print_columns(all, options.json.words());
+    }
+    return write_json(options.json, describe_worst_case(all)) ? kExitClean : kExitInternal;
 }
 
 }  // namespace axg

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// axguard-lab bench --worst-case: how long the worst-case batch takes on the GPU at hand, with the
-// capacities and the levels of a machine.
+// axguard-lab bench --worst-case: how long the worst-case batch, or the longest cycle of a plan,
+// takes on the GPU at hand, with the capacities and the levels of a machine.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,9 @@ namespace axg {
 struct WorstCaseBenchmarkOptions {
     std::string machine;            // empty: usual capacities, two tree levels of pairs of nodes
     std::uint32_t tree_levels = 0;  // of pairs of nodes; 0: the machine's
-    std::uint32_t launches = 1;     // of a cycle, which share the lists
+    std::uint32_t launches = 1;     // of a cycle, each with all lists full
+    std::uint32_t stages = 0;       // of the machine's plan; 0: batches
+    std::string axis_data = "computed";  // a name of leaf_kernels(), or all: one after the other
     std::uint32_t sms = 0, cycles = 10000;
     JsonOutput json;
 };

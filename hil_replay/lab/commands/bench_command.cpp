@@ -26,8 +26,9 @@ struct BenchOptions {
     bool paper = false, worst_case = false;
     PaperBenchmarkOptions experiment;
     SceneBenchmarkOptions scene;
-    std::string machine, pose_machine, lanes;
-    std::uint32_t tree_levels = 0, launches = 1, pose_passes = 25, step = kPlanStepAsStated;
+    std::string machine, pose_machine, lanes, axis_data = "computed";
+    std::uint32_t tree_levels = 0, launches = 1, stages = 0;
+    std::uint32_t pose_passes = 25, step = kPlanStepAsStated;
     bool has_cycles = false;
     std::string engine = "auto";
     JsonOutput json;
@@ -35,15 +36,18 @@ struct BenchOptions {
 
 /// With --worst-case: of a machine's plan on this processor, or of a GPU's batch.
 int run_worst_case(const BenchOptions& options) {
+    const std::string usual = options.experiment.data + "/config/machines/paper-trunnion.yaml";
     if (options.engine != "cpu") {
-        return run_worst_case_benchmark({.machine = options.machine,
+        const bool is_usual = options.machine.empty() && options.stages != 0;
+        return run_worst_case_benchmark({.machine = is_usual ? usual : options.machine,
                                          .tree_levels = options.tree_levels,
                                          .launches = options.launches,
+                                         .stages = options.stages,
+                                         .axis_data = options.axis_data,
                                          .sms = options.experiment.multiprocessors,
                                          .cycles = options.scene.cycles,
                                          .json = options.json});
     }
-    const std::string usual = options.experiment.data + "/config/machines/paper-trunnion.yaml";
     return run_cycle_benchmark({.machine = options.machine.empty() ? usual : options.machine,
                                 .lanes = options.lanes,
                                 .cycles = options.has_cycles ? options.scene.cycles : 0,
@@ -61,6 +65,10 @@ int benchmark(const BenchOptions& options) {
                    "--worst-case or --pose)\n");
         return kExitUsage;
     }
+    if (options.axis_data == "all" && !options.worst_case) {
+        fmt::print(stderr, "axguard-lab bench: --axis-data all needs --worst-case\n");
+        return kExitUsage;
+    }
     if (!options.pose_machine.empty()) {
         return run_pose_benchmark(
             {.machine = options.pose_machine, .passes = options.pose_passes, .json = options.json});
@@ -72,6 +80,7 @@ int benchmark(const BenchOptions& options) {
         SceneBenchmarkOptions scene = options.scene;
         scene.engine = options.engine;
         scene.sms = options.experiment.multiprocessors;
+        scene.axis_data = options.axis_data;
         scene.json = options.json;
         return run_scene_benchmark(scene);
     }
@@ -113,6 +122,15 @@ void add_worst_case_options(const Command& command, BenchOptions& options) {
         .add_option("--launches", options.launches,
                     "with --worst-case: launches per cycle, each with all lists full")
         .between(1U, 64U)
+        .shows_default();
+    command
+        .add_option("--stages", options.stages,
+                    "with --worst-case: the longest cycle of a plan in N stages [default: batches]")
+        .between(1U, kStagesMax);
+    command
+        .add_option("--axis-data", options.axis_data,
+                    "GPU axis data; rolled: axis loops not unrolled; all: a column each")
+        .one_of({"computed", "cached", "prefetched", "rolled", "all"})
         .shows_default();
 }
 

@@ -1,0 +1,447 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pairs of leaves, a warp a pair: moves both leaves once, drops the triangles whose tight boxes are
+// apart and gathers what is left. Then the warps of a block share what its four pairs of leaves
+// left, 32 pairs of triangles at a time: the certified test, a thread a pair. What float cannot
+// settle goes to the query's list for the recheck, unless the query is of float only. Where the
+// axis data of a triangle come from, and whether axis loops are written out, changes no bit.
+#pragma once
+
+#include <cuda_pipeline.h>
+
+#include <type_traits>
+
+#include "core/collision/lanes_rolled.hpp"
+#include "cuda/engine/device_traversal.cuh"
+#include "cuda/engine/kernels.hpp"
+#include "cuda/engine/launch_kernel.cuh"
+
+namespace axg::cuda {
+namespace {
+
+constexpr unsigned kWarps = 4, kThreads = kWarps * kWarp, kBlocksPerMultiprocessor = 4;
+
+/// One warp's tile.
+struct Tile {
+    float a[9][kNodeWidth], b[9][kNodeWidth];  // less the common origin
+    std::uint16_t pairs[kLeafPairs];           // place in a, place in b: five bits each
+    PairEntry at;
+    std::uint32_t count;    // of the pairs; 0 where they are not to be tested
+    std::uint32_t handled;  // pairs of leaves
+    std::uint32_t rows;     // of the batch, as far as this warp knows
+};
+
+/// Axis data of both leaves of a tile, one array a number: two edges, normal, squares, area, reach.
+constexpr unsigned kAxisNumbers = 14;
+struct AxisTile {
+    float a[kAxisNumbers][kNodeWidth], b[kAxisNumbers][kNodeWidth];
+};
+
+/// The pair of leaves that a warp takes next, on its way while it tests this one.
+struct NextPair {
+    TreeNode node_a, node_b;
+    TreeLeaf leaf_a, leaf_b;
+};
+
+template <AxisData kData>
+struct Shared {
+    static constexpr bool kStored = kData != AxisData::computed;
+    static constexpr bool kPrefetched = kData == AxisData::prefetched;
+    Tile tiles[kWarps];
+    std::conditional_t<kStored, AxisTile[kWarps], std::byte> axes;
+    alignas(16) std::conditional_t<kPrefetched, NextPair[kWarps], std::byte> next;
+    std::uint32_t count;  // pairs of leaves of the batch
+    bool is_lost;         // the batch, as far as this block knows
+};
+
+/// Two leaves of one query; `origin` is what both are moved by.
+struct Leaves {
+    const TreeNode& a;
+    const TreeNode& b;
+    const TreeLeaf& leaf_a;
+    const TreeLeaf& leaf_b;
+    float origin[3];
+};
+
+/// One lane's triangle of either leaf: its own box, and that from its moved vertices.
+struct ClippedLeaf {
+    TightBox tight_a, tight_b;
+    ChildBox box_a;
+    bool near_a = false;       // as far as boxes of whole leaves tell
+    std::uint32_t bits_b = 0;  // likewise, all lanes'
+};
+
+/// Moves both leaves into the tile; what boxes of whole leaves leave of them. Called by whole
+/// warps.
+__device__ ClippedLeaf move_leaves(const PreparedQuery& q, const Leaves& l, Tile& tile) {
+    const unsigned lane = lane_of_thread();
+    const float slack = q.c.tight_slack, none[3] = {0, 0, 0};
+    ClippedLeaf c;
+    float v[9];
+    c.tight_a = move_triangle(q.pose, l.origin, l.leaf_a, lane, v);
+    for (int k = 0; k < 9; ++k) {
+        tile.a[k][lane] = v[k];
+    }
+    c.tight_b = move_triangle(q.inverse, none, l.leaf_b, lane, nullptr);
+    for (int k = 0; k < 9; ++k) {
+        tile.b[k][lane] = l.leaf_b.v[k][lane] - l.origin[k % 3];
+    }
+    const TightBox whole_a = whole_of(c.tight_a), whole_b = whole_of(c.tight_b);
+    if (apart_from_tight(whole_a, l.b.box.c, l.b.box.h, l.origin, slack) ||
+        apart_from_tight(whole_b, l.a.box.c, l.a.box.h, none, slack)) {
+        return c;
+    }
+    c.box_a = child_box(l.a, lane);
+    const ChildBox box_b = child_box(l.b, lane);
+    c.near_a = lane < l.a.count && !apart_from_tight(whole_b, c.box_a.c, c.box_a.h, none, slack);
+    c.bits_b =
+        ballot(lane < l.b.count && !apart_from_tight(whole_a, box_b.c, box_b.h, l.origin, slack));
+    c.bits_b = ballot(c.near_a) == 0 ? 0 : c.bits_b;
+    return c;
+}
+
+__device__ __forceinline__ float from_lane(float value, unsigned lane) {
+    return __shfl_sync(kAllLanes, value, static_cast<int>(lane));
+}
+
+/// Pairs of triangles whose tight boxes are not proven apart, into tile.pairs: a lane a triangle of
+/// a, the triangles of b in turn. Returns how many.
+__device__ std::uint32_t clip(const PreparedQuery& q, const Leaves& l, const ClippedLeaf& c,
+                              Tile& tile) {
+    const unsigned lane = lane_of_thread();
+    const float slack = q.c.tight_slack, none[3] = {0, 0, 0};
+    std::uint32_t count = 0;
+    for (std::uint32_t left = c.bits_b; left != 0; left &= left - 1) {
+        const unsigned j = lowest(left);
+        const ChildBox other = child_box(l.b, j);
+        TightBox tight;
+        for (int k = 0; k < 3; ++k) {
+            tight.low[k] = from_lane(c.tight_b.low[k], j);
+            tight.high[k] = from_lane(c.tight_b.high[k], j);
+        }
+        const bool near = c.near_a &&
+                          !apart_from_tight(c.tight_a, other.c, other.h, l.origin, slack) &&
+                          !apart_from_tight(tight, c.box_a.c, c.box_a.h, none, slack);
+        const std::uint32_t bits = ballot(near);
+        if (near) {
+            tile.pairs[count + rank_in(bits)] = static_cast<std::uint16_t>(lane << 5U | j);
+        }
+        count += static_cast<std::uint32_t>(__popc(bits));
+    }
+    return count;
+}
+
+/// Counts what was found. Whether it may be tested: neither the query is lost, nor its group, nor
+/// the batch.
+__device__ bool fits_budget(const DeviceBuffers& buffers, std::uint32_t query, std::uint32_t count,
+                            std::uint32_t group) {
+    std::uint32_t before = 0;
+    bool fits = true;
+    if (lane_of_thread() == 0) {
+        before = atomicAdd(&buffers.tallies[query].triangle_pairs, count);
+    } else if (lane_of_thread() == 1) {
+        before = atomicAdd(&buffers.counters->triangle_pairs, count);
+    } else if (lane_of_thread() == 2 && buffers.limits.is_stage) {
+        fits = charge(buffers.groups[group], kTrianglePairsPlace, charged_pairs(count),
+                      kLossOfTriangles);
+    }
+    const DeviceLimits& limits = buffers.limits;
+    return ballot(!fits) == 0 &&
+           __shfl_sync(kAllLanes, before, 0) + count <= limits.triangle_pairs &&
+           __shfl_sync(kAllLanes, before, 1) + count <= buffers.counters->budget.triangle_pairs;
+}
+
+/// Axis data of one triangle to a column, or back.
+__device__ __forceinline__ void store_axes(const float (&v)[9][kNodeWidth], unsigned place,
+                                           float (&to)[kAxisNumbers][kNodeWidth]) {
+    sat::V3<float> corner[3];
+    for (int i = 0; i < 3; ++i) {
+        corner[i] = {v[3 * i][place], v[3 * i + 1][place], v[3 * i + 2][place]};
+    }
+    const sat::TriangleAxes<float> t = sat::axes_of_triangle(corner);
+    const float numbers[kAxisNumbers] = {
+        t.edge[0].x, t.edge[0].y, t.edge[0].z,  t.edge[1].x,  t.edge[1].y,  t.edge[1].z, t.normal.x,
+        t.normal.y,  t.normal.z,  t.squares[0], t.squares[1], t.squares[2], t.area,      t.reach};
+    for (unsigned i = 0; i < kAxisNumbers; ++i) {
+        to[i][place] = numbers[i];
+    }
+}
+__device__ __forceinline__ sat::TriangleAxes<float> load_axes(
+    const float (&from)[kAxisNumbers][kNodeWidth], unsigned place) {
+    float x[kAxisNumbers];
+    for (unsigned i = 0; i < kAxisNumbers; ++i) {
+        x[i] = from[i][place];
+    }
+    return {{{x[0], x[1], x[2]}, {x[3], x[4], x[5]}},
+            {x[6], x[7], x[8]},
+            {x[9], x[10], x[11]},
+            x[12],
+            x[13]};
+}
+
+/// Starts to copy whole lines of 16 bytes, all lanes together.
+__device__ __forceinline__ void start_copy(void* to, const void* from, unsigned bytes) {
+    for (unsigned at = lane_of_thread() * 16; at < bytes; at += kWarp * 16) {
+        __pipeline_memcpy_async(static_cast<char*>(to) + at, static_cast<const char*>(from) + at,
+                                16);
+    }
+}
+
+/// Starts to read the i-th pair of leaves of the batch. Called by whole warps.
+__device__ void prefetch(const DeviceBuffers& b, std::uint32_t i, std::uint32_t count,
+                         NextPair& next) {
+    static_assert(sizeof(TreeNode) % 16 == 0 && sizeof(TreeLeaf::v) % 16 == 0);
+    if (i < count) {
+        const PairEntry at = b.leaves[i];
+        const PreparedQuery& q = b.prepared[at.query];
+        const TreeNode &node_a = q.a.nodes[at.a], &node_b = q.b.nodes[at.b];
+        start_copy(&next.node_a, &node_a, sizeof node_a);
+        start_copy(&next.node_b, &node_b, sizeof node_b);
+        start_copy(next.leaf_a.v, q.a.leaves[node_a.leaf].v, sizeof next.leaf_a.v);
+        start_copy(next.leaf_b.v, q.b.leaves[node_b.leaf].v, sizeof next.leaf_b.v);
+    }
+    __pipeline_commit();
+}
+
+/// One pair of leaves, up to the pairs of triangles that are left of it. Called by whole warps;
+/// the first lane gets the batch's rows of boxes so far.
+/// @param next  the pair, where it was prefetched; else null
+__device__ std::uint32_t gather(const DeviceBuffers& buffers, Tile& tile, const NextPair* next) {
+    const PreparedQuery& q = buffers.prepared[tile.at.query];
+    const TreeNode& a = next != nullptr ? next->node_a : q.a.nodes[tile.at.a];
+    const TreeNode& b = next != nullptr ? next->node_b : q.b.nodes[tile.at.b];
+    const Moved own = moved_box(q.c.a_in_b, a.box.c, a.box.h);
+    const Leaves l{a,
+                   b,
+                   next != nullptr ? next->leaf_a : q.a.leaves[a.leaf],
+                   next != nullptr ? next->leaf_b : q.b.leaves[b.leaf],
+                   {own.c[0], own.c[1], own.c[2]}};
+    const ClippedLeaf clipped = move_leaves(q, l, tile);
+    std::uint32_t rows = 0;
+    const auto more = static_cast<std::uint32_t>(__popc(clipped.bits_b));
+    if (lane_of_thread() == 0 && more != 0) {
+        rows = atomicAdd(&buffers.counters->box_rows, more) + more;
+    } else if (lane_of_thread() == 1 && more != 0 && buffers.limits.is_stage) {
+        charge(buffers.groups[q.group], kBoxRowsPlace, more, kLossOfClipping);
+    }
+    const std::uint32_t count = clip(q, l, clipped, tile);
+    if (count != 0 && fits_budget(buffers, tile.at.query, count, q.group) &&
+        lane_of_thread() == 0) {
+        tile.count = count;
+    }
+    return rows;
+}
+
+/// Vertices in the lane whose axis loops are written out, or left as loops.
+template <class Lane>
+struct LaneVertices {
+    sat::V3<Lane> a[3], b[3];
+};
+template <class Lane>
+__device__ __forceinline__ LaneVertices<Lane> in_lane(const Vertices& v) {
+    LaneVertices<Lane> out;
+    for (int i = 0; i < 3; ++i) {
+        out.a[i] = {{v.a[i].x}, {v.a[i].y}, {v.a[i].z}};
+        out.b[i] = {{v.b[i].x}, {v.b[i].y}, {v.b[i].z}};
+    }
+    return out;
+}
+
+/// Whether they are certified apart. `edges_square` is set where they are not.
+template <bool kMargin, class Lane>
+__device__ __forceinline__ bool test_pair(const sat::PairLimits<Lane>& limits,
+                                          const LaneVertices<Lane>& v,
+                                          const sat::StoredAxes<float>* stored,
+                                          Lane* edges_square) {
+    if constexpr (std::is_same_v<Lane, float>) {
+        if (stored != nullptr) {
+            const sat::EdgePair<float> p{{stored->a.edge[0], stored->a.edge[1]},
+                                         {stored->b.edge[0], stored->b.edge[1]},
+                                         sat::sub(v.b[0], v.a[0])};
+            return sat::separated_edges<kMargin, true>(p, v.a[0], *stored, limits.d,
+                                                       limits.r_square) ||
+                   sat::apart_by_itself<kMargin>(false, v.a, v.b, limits, edges_square);
+        }
+    }
+    return sat::apart<kMargin>(v.a, v.b, limits, edges_square);
+}
+
+/// The certified test of one pair of triangles.
+/// @param axes  of the tile; null: computed here
+template <class Lane>
+__device__ __forceinline__ void test(const DeviceBuffers& buffers, const Tile& tile,
+                                     const AxisTile* axes, unsigned i) {
+    const PreparedQuery& q = buffers.prepared[tile.at.query];
+    const sat::PairLimits<Lane> limits{{q.c.d32}, {q.c.margin}, {q.c.r_square}};
+    const unsigned place_a = tile.pairs[i] >> 5U, place_b = tile.pairs[i] & 31U;
+    const LaneVertices<Lane> v = in_lane<Lane>(vertices_of(tile.a, place_a, tile.b, place_b));
+    sat::StoredAxes<float> stored;
+    if (axes != nullptr) {
+        stored = {load_axes(axes->a, place_a), load_axes(axes->b, place_b)};
+    }
+    const sat::StoredAxes<float>* const data = axes != nullptr ? &stored : nullptr;
+    Lane edges_square = lanes::Traits<Lane>::of(0);
+    const bool apart = q.c.has_margin ? test_pair<true>(limits, v, data, &edges_square)
+                                      : test_pair<false>(limits, v, data, &edges_square);
+    if (apart) {
+        return;
+    }
+    // Which query and which triangles are read anew: in registers over the whole test they are
+    // too many for compute capability 11.0.
+    const PreparedQuery& again =
+        buffers.prepared[*static_cast<const volatile std::uint32_t*>(&tile.at.query)];
+    const unsigned places = *static_cast<const volatile std::uint16_t*>(&tile.pairs[i]);
+    const bool is_near =
+        again.c.has_margin && sat::certified_within(sat::scaled_pair(v.a, v.b, Lane{again.c.d32}),
+                                                    edges_square, Lane{again.near_mm});
+    const bool is_farther = again.kind == QueryKind::farther;
+    if (buffers.limits.is_stage && !(again.is_float_only && is_farther)) {
+        // Also one that is certified within the margin: what the CPU tests again, up to the first
+        // that touches, is never more.
+        charge(buffers.groups[again.group], kRechecksPlace, 1, kLossOfRechecks);
+    }
+    if ((is_near || again.is_float_only) && is_farther) {
+        // Settled, whatever else is found; that all of this kernel's pairs are counted before
+        // anyone looks keeps the work independent of the order.
+        atomicOr(&buffers.tallies[tile.at.query].near, 1U);
+        return;
+    }
+    const std::uint32_t slot = atomicAdd(&buffers.tallies[tile.at.query].rechecks, 1U);
+    if (slot < buffers.limits.rechecks) {
+        const std::size_t row = std::size_t{tile.at.query} * buffers.limits.rechecks;
+        buffers.rechecks[row + slot] = {tile.at.a,
+                                        tile.at.b,
+                                        static_cast<std::uint8_t>(places >> 5U),
+                                        static_cast<std::uint8_t>(places & 31U),
+                                        static_cast<std::uint16_t>(is_near ? 1 : 0),
+                                        0};
+    } else if (buffers.limits.is_stage) {
+        atomicMin(&buffers.groups[again.group].lost, kLossOfRechecks);
+    }
+}
+
+/// What the block's tiles hold, dealt out to its warps 32 at a time.
+template <AxisData kData, class Lane>
+__device__ void test_rooms(const DeviceBuffers& buffers, const Shared<kData>& shared) {
+    const unsigned warp = threadIdx.x / kWarp;
+    unsigned dealt = 0;
+#pragma unroll 1
+    for (const Tile& tile : shared.tiles) {
+        const AxisTile* axes = nullptr;
+        if constexpr (Shared<kData>::kStored) {
+            axes = &shared.axes[&tile - shared.tiles];
+        }
+        const unsigned shares = (tile.count + kWarp - 1) / kWarp;
+#pragma unroll 1
+        for (unsigned n = (warp + kWarps - dealt) % kWarps; n < shares; n += kWarps) {
+            const unsigned i = n * kWarp + lane_of_thread();
+            if (i < tile.count) {
+                test<Lane>(buffers, tile, axes, i);
+            }
+        }
+        dealt = (dealt + shares) % kWarps;
+    }
+}
+
+/// Whether this warp's pair of leaves, the i-th of the batch, is to be looked at. Counts it.
+__device__ bool take(const DeviceBuffers& b, std::uint32_t i, std::uint32_t count, Tile& tile) {
+    if (i >= count) {
+        return false;
+    }
+    const PairEntry at = b.leaves[i];
+    if (b.prepared[at.query].kind == QueryKind::clearance) {
+        return false;  // measure_leaves handles those
+    }
+    if (lane_of_thread() == 0) {
+        tile.at = at;
+        ++tile.handled;
+    }
+    __syncwarp();
+    return !is_lost(b, b.prepared[at.query], kLossOfClipping) &&
+           !is_over(b.tallies[at.query], kTreeLevelsMax - 1, b.limits.node_pairs);
+}
+
+/// This warp's pair of leaves into its tile, with the axis data of its triangles.
+template <AxisData kData>
+__device__ void fill_tile(const DeviceBuffers& b, Shared<kData>& shared, unsigned warp) {
+    Tile& tile = shared.tiles[warp];
+    const NextPair* next = nullptr;
+    if constexpr (Shared<kData>::kPrefetched) {
+        next = &shared.next[warp];
+    }
+    const std::uint32_t rows = gather(b, tile, next);
+    if (lane_of_thread() == 0) {
+        tile.rows = rows;
+    }
+    if constexpr (Shared<kData>::kStored) {
+        __syncwarp();
+        if (tile.count != 0) {
+            store_axes(tile.a, lane_of_thread(), shared.axes[warp].a);
+            store_axes(tile.b, lane_of_thread(), shared.axes[warp].b);
+        }
+    }
+}
+
+template <AxisData kData, class Lane>
+__global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
+    test_leaves_kernel(const __grid_constant__ DeviceBuffers b) {
+    wait_for_kernel_before();
+    __shared__ Shared<kData> shared;
+    const unsigned warp = threadIdx.x / kWarp;
+    Tile& tile = shared.tiles[warp];
+    if (lane_of_thread() == 0) {
+        tile.handled = 0;
+        tile.rows = 0;
+    }
+    if (threadIdx.x == 0) {
+        shared.is_lost = false;
+        shared.count = min(b.counters->leaf_listed, b.counters->budget.leaf_pairs);
+    }
+    __syncthreads();
+    if constexpr (Shared<kData>::kPrefetched) {
+        prefetch(b, blockIdx.x + warp * gridDim.x, shared.count, shared.next[warp]);
+    }
+    // One to every block before any block gets a second.
+    for (std::uint32_t base = blockIdx.x; base < shared.count; base += kWarps * gridDim.x) {
+        if (lane_of_thread() == 0) {
+            tile.count = 0;
+        }
+        __syncthreads();
+        // Rows beyond the limit: the whole batch is not proven, whatever is left out here.
+        const bool is_lost = shared.is_lost;
+        const std::uint32_t i = base + warp * gridDim.x;
+        if constexpr (Shared<kData>::kPrefetched) {
+            __pipeline_wait_prior(0);
+            __syncwarp();
+        }
+        if (take(b, i, shared.count, tile) && !is_lost) {
+            fill_tile(b, shared, warp);
+        }
+        if constexpr (Shared<kData>::kPrefetched) {
+            __syncwarp();  // nobody reads this pair any more
+            prefetch(b, i + kWarps * gridDim.x, shared.count, shared.next[warp]);
+        }
+        __syncthreads();
+        if (threadIdx.x == 0) {
+            for (const Tile& other : shared.tiles) {
+                shared.is_lost = shared.is_lost || other.rows > b.counters->budget.box_rows;
+            }
+        }
+        test_rooms<kData, Lane>(b, shared);
+        __syncthreads();
+    }
+    if (lane_of_thread() == 0 && tile.handled != 0) {
+        atomicAdd(&b.counters->leaf_handled, tile.handled);
+    }
+}
+
+}  // namespace
+
+/// Launches the kernel over these axis data.
+/// @tparam Lane  float: axis loops written out; lanes::RolledFloat: left as loops
+template <AxisData kData, class Lane = float>
+cudaError_t launch_leaves(const DeviceBuffers& buffers, const Launch& launch) noexcept {
+    const unsigned blocks = launch.multiprocessors * kBlocksPerMultiprocessor;
+    return launch_kernel(test_leaves_kernel<kData, Lane>, blocks, kThreads, launch, buffers);
+}
+
+}  // namespace axg::cuda
