@@ -43,6 +43,15 @@ namespace axg {
 /// that.
 [[nodiscard]] double capped_speed(const Axis& axis, double share) noexcept;
 
+/// Where `axis` can get until it stands, mm or rad. A travel that the board enforces ends it.
+/// @param free_s          free_seconds of the permit
+/// @param position_error  of reported positions, by which the travel is wider
+[[nodiscard]] ReachRange axis_reach(const Machine& machine, std::uint32_t axis,
+                                    const AxisLimits& limits, const AxisRange& now, double free_s,
+                                    double position_error) noexcept;
+/// The axis of a box that lies around the range, roundings included.
+void put_reach(const ReachRange& range, std::uint32_t axis, JointBox& box) noexcept;
+
 /// A pair with one tool, its box still to be said.
 /// @param extents  [surfaces] the engine's, in its order; they must outlive the task
 [[nodiscard]] JointBoxTask pair_task(const Machine& machine, std::uint32_t pair, std::uint32_t tool,
@@ -135,6 +144,8 @@ class StopCertificate {
     /// Everything `axis` may be doing at the newest snapshot; its whole range of speed in a stop of
     /// the board's own and until 16 strides of rest are over. Precondition: one was noted.
     [[nodiscard]] AxisRange now(std::uint32_t axis) const noexcept;
+    /// What it is promised to keep to, and no faster than `bound_speeds` has it.
+    [[nodiscard]] AxisLimits bounded_limits(std::uint32_t axis) const noexcept;
     /// How far `axis` may be from where the newest snapshot has it as long as nothing commands it
     /// to move, mm or rad: the snapshot may have been off its command, and it may be off later.
     [[nodiscard]] double held_error(std::uint32_t axis) const noexcept {
