@@ -13,18 +13,6 @@
 
 namespace axg {
 
-namespace {
-
-constexpr double kUp = 1.0 + 0x1p-40;  // more than the roundings of any formula below
-
-void put_range(const ReachRange& range, std::uint32_t axis, JointBox& box) noexcept {
-    const double centre = 0.5 * (range.low + range.high);
-    box.centre[axis] = centre;
-    box.half[axis] = std::max(range.high - centre, centre - range.low) * kUp;
-}
-
-}  // namespace
-
 std::uint32_t stop_tasks(const Machine& machine) noexcept {
     std::uint32_t count = 0;
     for (const Pair& pair : machine.pairs) {
@@ -230,21 +218,19 @@ AxisRange StopCertificate::now(std::uint32_t axis) const noexcept {
     return range;
 }
 
+AxisLimits StopCertificate::bounded_limits(std::uint32_t axis) const noexcept {
+    AxisLimits limits = stop_limits(*machine_, axis);
+    limits.speed_max = std::min(limits.speed_max, speed_bound_[axis]);
+    return limits;
+}
+
 JointBox StopCertificate::reach(std::uint32_t samples) const noexcept {
     const double free_s = free_seconds(*machine_, samples);
     JointBox box;
     for (std::uint32_t i = 0; i < machine_->axes.size(); ++i) {
-        const Axis& axis = machine_->axes[i];
-        const SampleErrors errors = errors_of(i);
-        const AxisRange now = this->now(i);
-        AxisLimits limits = stop_limits(*machine_, i);
-        limits.speed_max = std::min(limits.speed_max, speed_bound_[i]);
-        ReachRange range = stop_reach(limits, now, free_s);
-        if (machine_->guard.travel_enforced && !axis.unlimited) {
-            range.low = std::max(range.low, std::min(axis.min - errors.position, now.low));
-            range.high = std::min(range.high, std::max(axis.max + errors.position, now.high));
-        }
-        put_range(range, i, box);
+        put_reach(
+            axis_reach(*machine_, i, bounded_limits(i), now(i), free_s, errors_of(i).position), i,
+            box);
     }
     return box;
 }
@@ -263,7 +249,7 @@ JointBox StopCertificate::jog_box(std::uint32_t samples) const noexcept {
             range.low -= jog_.move().is_negative ? reach : back;
             range.high += jog_.move().is_negative ? back : reach;
         }
-        put_range(range, i, box);
+        put_reach(range, i, box);
     }
     return box;
 }

@@ -8,7 +8,7 @@ namespace axg {
 
 namespace {
 
-constexpr double kUp = 1.0 + 0x1p-40;  // more than the roundings of capped_speed
+constexpr double kUp = 1.0 + 0x1p-40;  // more than the roundings of any formula below
 
 }  // namespace
 
@@ -47,6 +47,23 @@ SampleErrors sample_errors(const Machine& machine, std::uint32_t axis, double co
             has_instant ? guard.latch_jitter_s : std::max(guard.latch_jitter_s, arrival_s),
         .position = machine.axes[axis].position_error + machine.axes[axis].following_error + count,
         .is_jerk_limited = guard.free_jerk_limited};
+}
+
+void put_reach(const ReachRange& range, std::uint32_t axis, JointBox& box) noexcept {
+    const double centre = 0.5 * (range.low + range.high);
+    box.centre[axis] = centre;
+    box.half[axis] = std::max(range.high - centre, centre - range.low) * kUp;
+}
+
+ReachRange axis_reach(const Machine& machine, std::uint32_t axis, const AxisLimits& limits,
+                      const AxisRange& now, double free_s, double position_error) noexcept {
+    const Axis& of = machine.axes[axis];
+    ReachRange range = stop_reach(limits, now, free_s);
+    if (machine.guard.travel_enforced && !of.unlimited) {
+        range.low = std::max(range.low, std::min(of.min - position_error, now.low));
+        range.high = std::min(range.high, std::max(of.max + position_error, now.high));
+    }
+    return range;
 }
 
 }  // namespace axg

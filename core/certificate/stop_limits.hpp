@@ -6,6 +6,7 @@
 
 #include <cstdint>
 
+#include "core/certificate/joint_path.hpp"
 #include "core/certificate/motion_history.hpp"
 #include "core/certificate/stop_reach.hpp"
 #include "core/machine/machine.hpp"
@@ -27,5 +28,14 @@ namespace axg {
 /// speed: it swings about them within its following error, and a stop may begin at any point of
 /// that.
 [[nodiscard]] double capped_speed(const Axis& axis, double share) noexcept;
+
+/// Where `axis` can get until it stands, mm or rad. A travel that the board enforces ends it.
+/// @param free_s          free_seconds of the permit
+/// @param position_error  of reported positions, by which the travel is wider
+[[nodiscard]] ReachRange axis_reach(const Machine& machine, std::uint32_t axis,
+                                    const AxisLimits& limits, const AxisRange& now, double free_s,
+                                    double position_error) noexcept;
+/// The axis of a box that lies around the range, roundings included.
+void put_reach(const ReachRange& range, std::uint32_t axis, JointBox& box) noexcept;
 
 }  // namespace axg

@@ -169,6 +169,9 @@ void look_for_ways_out(const DriveArguments& arguments, const LoadedMachine& loa
                        DriveReport& report) {
     const AxisSnapshot rest = snapshot_at_rest(loaded.machine, report.result);
     report.escapes = find_escapes(loaded, report.engine, containment_test, rest);
+    const DriveStop& stop = report.result.guard_stop;
+    report.why = why_of({.loaded = loaded, .engine = report.engine},
+                        {stop.reason, stop.pair, stop.snapshot, stop.unproven});
     if (arguments.jogs_out) {
         report.jogs = jog_out(loaded, report.engine, containment_test, rest, options);
     }

@@ -268,6 +268,7 @@ int replay(const ReplayArguments& arguments) {
                         arguments.is_realtime,
                         end,
                         std::move(lines)};
+    explain_stops(report);
     const std::string words =
         printed_text([&report](std::FILE* stream) { print_replay(report, stream); });
     fmt::print(arguments.json.words(), "{}", words);

@@ -7,7 +7,8 @@ namespace axg {
 
 DriveGuard::DriveGuard(const Machine& machine, GuardChain& chain, const ConfigurationHashes& hashes,
                        std::int64_t response_us, std::int64_t now_us, std::int64_t killed_us)
-    : chain_(chain),
+    : machine_(machine),
+      chain_(chain),
       sends_sync_(machine.can.guard_sends_sync),
       killed_us_(killed_us),
       sent_(&first_),
@@ -71,7 +72,14 @@ void DriveGuard::note_stop() {
              .pair = live.pair(),
              .fault = live.receiver().stop_cause(),
              .limit = result_.limit,
-             .snapshot = chain_.snapshot()};
+             .snapshot = chain_.snapshot(),
+             .unproven = unproven(live.pair())};
+}
+
+UnprovenPair DriveGuard::unproven(std::uint32_t pair) const noexcept {
+    const StopCertificate* const certificate = chain_.stop_certificate();
+    return certificate != nullptr && pair != kNoIndex ? unproven_pair(machine_, *certificate, pair)
+                                                      : UnprovenPair{};
 }
 
 }  // namespace axg

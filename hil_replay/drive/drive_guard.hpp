@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/guard/distance_need.hpp"
 #include "firmware_if/guard/guard_chain.hpp"
 #include "hil_replay/board/closed_loop.hpp"
 #include "hil_replay/guard/timed_guard.hpp"
@@ -20,6 +21,7 @@ struct DriveStop {
     ReceiverFault fault = ReceiverFault::none;  // cause input
     LimitFact limit{};                          // for left_limits
     AxisSnapshot snapshot;                      // the last one
+    UnprovenPair unproven{};                    // stoppable mode: `pair`, as its proof failed
 };
 
 [[nodiscard]] constexpr bool has_reason(const DriveStop& stop) noexcept {
@@ -47,7 +49,8 @@ class DriveGuard {
         return {.reason = result_.reason,
                 .pair = result_.pair,
                 .limit = result_.limit,
-                .snapshot = chain_.snapshot()};
+                .snapshot = chain_.snapshot(),
+                .unproven = unproven(result_.pair)};
     }
     [[nodiscard]] const CycleResult& result() const noexcept { return result_; }
     /// Of the newest result: a permit was sent.
@@ -55,9 +58,11 @@ class DriveGuard {
 
   private:
     void note_stop();
+    [[nodiscard]] UnprovenPair unproven(std::uint32_t pair) const noexcept;
 
     void take_wire(std::vector<CanFrame>& sent);
 
+    const Machine& machine_;
     GuardChain& chain_;
     bool sends_sync_;
     std::int64_t killed_us_;

@@ -54,6 +54,9 @@ void print_guard_stop(const DriveReport& report, std::FILE* words) {
     if (stop.reason == StopReason::left_limits) {
         fmt::print(words, "  {}\n", limit_text(stop.limit, report.machine));
     }
+    if (report.why) {
+        fmt::print(words, "{}", format_why(report.machine, *report.why));
+    }
 }
 
 /// What the wire did, and what the guard sent about its stop.

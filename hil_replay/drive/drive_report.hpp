@@ -14,6 +14,7 @@
 #include "hil_replay/drive/drive_run.hpp"
 #include "hil_replay/drive/jog_out.hpp"
 #include "hil_replay/drive/path_judge.hpp"
+#include "hil_replay/replay/why_stop.hpp"
 
 namespace axg {
 
@@ -36,6 +37,7 @@ struct DriveReport {
     Escapes escapes{};                     // from where the axes rest after a stop
     std::optional<JogOut> jogs{};          // that followed
     std::optional<BusReport> bus{};        // the guard was another program; `mode` is not known
+    std::optional<StopWhy> why{};          // of the guard's stop, or of the permit that never came
 };
 
 void print_drive(const DriveReport& report, std::FILE* words);

@@ -42,9 +42,13 @@ nlohmann::ordered_json bus_json(const Machine& machine, const BusReport& bus) {
     return out;
 }
 
-nlohmann::ordered_json guard_stop_json(const Machine& machine, const DriveStop& stop) {
+nlohmann::ordered_json guard_stop_json(const DriveReport& report) {
+    const DriveStop& stop = report.result.guard_stop;
     nlohmann::ordered_json out{{"reason", reason_text(stop)}, {"sample", stop.snapshot.sample}};
-    add_stop_cause(machine, stop.reason, stop.pair, stop.fault, stop.limit, out);
+    add_stop_cause(report.machine, stop.reason, stop.pair, stop.fault, stop.limit, out);
+    if (report.why) {
+        out["why"] = why_json(report.machine, *report.why);
+    }
     return out;
 }
 
@@ -90,7 +94,7 @@ std::string describe_drive(const DriveReport& report) {
                              {"rest_us", stop.rest_us}};
     }
     if (has_reason(result.guard_stop)) {
-        out["guard_stop"] = guard_stop_json(machine, result.guard_stop);
+        out["guard_stop"] = guard_stop_json(report);
     }
     if (report.contact) {
         out["contact"] = {{"after_s", seconds_after_start(*report.contact)},
@@ -124,8 +128,11 @@ std::string describe_stops(const DriveReport& report) {
     const DriveStop& stop = report.result.guard_stop;
     if (has_reason(stop)) {
         stops.push_back({{"time_us", stop.snapshot.arrived_us}, {"reason", reason_text(stop)}});
+        if (report.why) {
+            stops.back()["why"] = why_json(report.machine, *report.why);
+        }
     }
-    return stops.dump();
+    return stops.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 }  // namespace axg

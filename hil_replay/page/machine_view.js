@@ -5,6 +5,7 @@
 
 const BODY_COLOURS = [0x6b7689, 0x3f76a3, 0x3f8050, 0xa86a1c, 0x8f5f8f, 0xb3574c, 0x2f7f76,
                       0x77774f, 0x7a64a0, 0x94706a];
+const REACH_COLOUR = 0x1a4fd6, REACH_OPACITY = 0.14;
 const TOUCH_COLOUR = 0xd00000, NEAR_COLOUR = 0xff7b00, POINT_COLOUR = 0x000000;
 const CONTACT_MM = 12, CONTACT_VIEW = 5;  // the least that is looked at, from so many times as far
 const SEEN_THROUGH = 0.35;  // of the two bodies, where their contact is looked at
@@ -82,6 +83,8 @@ class MachineView {
     this.tools = data.tool_meshes.map((mesh) => this.addMesh(mesh, toolBody));
     this.marked = new THREE.Group();
     this.scene.add(this.marked);
+    this.reach = new THREE.Group();
+    this.scene.add(this.reach);
   }
 
   addMesh(mesh, bodyIndex) {
@@ -185,6 +188,29 @@ class MachineView {
       {color: POINT_COLOUR, size: 7, sizeAttenuation: false, depthTest: false, transparent: true}));
     points.renderOrder = 3;
     this.marked.add(points);
+  }
+
+  /** Boxes that bodies do not leave: [{low_mm, high_mm, placed}], each in its body's mesh frame. */
+  showReach(boxes) {
+    for (const old of this.reach.children) old.geometry.dispose();
+    this.reach.remove(...this.reach.children);
+    for (const {low_mm, high_mm, placed} of boxes) {
+      const low = new THREE.Vector3(...low_mm), size = new THREE.Vector3(...high_mm).sub(low);
+      const geometry = new THREE.BoxGeometry(size.x, size.y, size.z);
+      geometry.translate(low.x + size.x / 2, low.y + size.y / 2, low.z + size.z / 2);
+      const parts = [
+        new THREE.Mesh(geometry, new THREE.MeshBasicMaterial(
+          {color: REACH_COLOUR, transparent: true, opacity: REACH_OPACITY, depthWrite: false,
+           side: THREE.DoubleSide})),
+        new THREE.LineSegments(new THREE.EdgesGeometry(geometry),
+                               new THREE.LineBasicMaterial({color: REACH_COLOUR}))];
+      for (const part of parts) {
+        part.matrixAutoUpdate = false;
+        part.matrix.copy(matrixOf(placed));
+        this.reach.add(part);
+      }
+    }
+    this.draw();
   }
 
   markTriangle(corners, colour) {

@@ -24,8 +24,9 @@ class RunPage {
     this.makeControls();
     this.drawMarks();
     this.plots = new Plots(data, (time) => this.goTo(time));
+    const opensAt = this.stops.find((stop) => !stop.isWithheld) || this.stops[0];
     const asked = /^#t=([-+.\de]+)$/.exec(window.location.hash);
-    this.goTo(asked ? Number(asked[1]) : this.stops.length > 0 ? this.stops[0].time : this.first);
+    this.goTo(asked ? Number(asked[1]) : opensAt ? opensAt.time : this.first);
     if (this.view) this.view.frameAll();
   }
 
@@ -33,11 +34,13 @@ class RunPage {
     const {data} = this;
     document.title = `axguard: ${data.title}`;
     const lines = data.words.split("\n").filter((line) => line.trim() !== "");
-    const headline = lines.find((line) => /^(STOP|no stop)/.test(line)) || lines[0] || "";
+    const headline = lines.find((line) => /^(STOP|no stop)/.test(line)) ||
+      lines.find((line) => line.startsWith("NO PERMIT")) || lines[0] || "";
     this.byId("headline").textContent = headline;
     this.byId("subline").textContent = `${data.machine.name}: ${data.title}`;
     this.byId("words").textContent = data.words.trim();
-    document.querySelector("header").classList.toggle("stopped", headline.startsWith("STOP"));
+    const isStopped = /^(STOP|NO PERMIT)/.test(headline);
+    document.querySelector("header").classList.toggle("stopped", isStopped);
     const {count, rows, stride} = data.samples;
     this.byId("rows").textContent = stride > 1
       ? `${count} samples in ${rows} rows of ${stride}: least and most are kept, and the machine is
@@ -51,10 +54,17 @@ class RunPage {
     return this.data.stops.map((stop) => ({
       time: stop.time_us * 1e-6,
       reason: stop.reason,
+      isWithheld: stop.withheld === true,
+      why: stop.why || null,
+      nearest: (stop.pairs || []).filter((pair) => pair.nearest && stop.why &&
+                                                   pair.pair === stop.why.pair)
+        .map((pair) => ({pair: pairIndex.get(pair.pair), a: pair.nearest[0],
+                         b: pair.nearest[1]}))[0] || null,
       positions: machine.axes.map(({name, unit}) => (stop.axes || {})[`${name}_${unit}`]),
       touching: (stop.pairs || []).map((pair) => ({
         pair: pairIndex.get(pair.pair), triangles: pair.triangles || []})),
-    })).filter((stop) => stop.time >= this.first - 1 && stop.time <= this.last + 1);
+    })).filter((stop) => stop.time >= this.first - 1 && stop.time <= this.last + 1)
+      .sort((a, b) => a.time - b.time);
   }
 
   makeView() {
@@ -95,6 +105,7 @@ class RunPage {
     this.byId("contact").addEventListener("click", () => this.goToContact());
     this.byId("whole").addEventListener("click", () => this.view && this.view.frameAll());
     this.byId("contact").disabled = this.byId("whole").disabled = this.view === null;
+    this.byId("reach").addEventListener("change", () => this.goTo(this.time));
     document.addEventListener("keydown", (event) => this.onKey(event));
   }
 
@@ -144,7 +155,9 @@ class RunPage {
     addWhere(samples.level, (level) => level <= LEVELS.indexOf("warn"), "warn", "level: warn");
     addWhere(samples.level, (level) => level <= LEVELS.indexOf("slow"), "slow", "level: slow");
     addWhere(samples.permit, (permit) => permit < PERMIT_GONE, "kept_back", "no permit");
-    for (const stop of this.stops) add(stop.time, stop.time, "stop", `stop: ${stop.reason}`);
+    for (const stop of this.stops) {
+      if (!stop.isWithheld) add(stop.time, stop.time, "stop", `stop: ${stop.reason}`);
+    }
   }
 
   /** The last row that is not after a time. */
@@ -195,12 +208,16 @@ class RunPage {
     const positions = isExact ? stop.positions
       : machine.axes.map(({name, unit}) => samples[`${name}_${unit}`][this.row]);
     const pair = samples.pair[this.row];
-    const nearest = pair === null ? null
+    const ofRow = pair === null ? null
       : {pair, a: samples.triangle_a[this.row], b: samples.triangle_b[this.row]};
+    const nearest = stop && stop.nearest ? stop.nearest : ofRow;
     this.positions = positions;
     if (this.view) {
       this.view.show(positions, samples.tool[this.row], nearest, stop ? stop.touching : []);
+      this.view.showReach(stop && stop.why && this.byId("reach").checked
+        ? stop.why.reach_bodies || [] : []);
     }
+    writeWhy(stop && stop.why);
     this.byId("slider").value = this.row;
     this.byId("clock").textContent = `${this.time.toFixed(3)} s`;
     this.writeHere(positions, stop);
@@ -217,7 +234,7 @@ class RunPage {
     lines.push(hasPermit ? "permit" : "no permit");
     const level = LEVELS[samples.level[this.row]];
     if (level !== "clear") lines.push(`level: ${level}`);
-    if (stop) lines.push(`STOP: ${stop.reason}`);
+    if (stop) lines.push(`${stop.isWithheld ? "NO PERMIT" : "STOP"}: ${stop.reason}`);
     this.byId("here").textContent = lines.join("\n");
   }
 

@@ -27,6 +27,9 @@ PairAtStop look_at(const ReplayReport& report, const BodyTriangles& named,
     query.r_mm = kStopWithinMm;
     report.engine.run({&query, 1}, {&result, 1});
     out.clearance_mm = result.clearance_mm;
+    if (result.status == QueryStatus::ok && result.clearance_mm < kStopWithinMm) {
+        out.nearest = named.of(query, result.nearest);
+    }
     std::vector<TriangleIds> list(kListed);
     query.kind = QueryKind::touching;
     query.r_mm = 0;

@@ -20,9 +20,10 @@ inline constexpr double kStopWithinMm = 50.0;
 struct PairAtStop {
     std::uint32_t pair = kNoIndex;
     std::uint32_t touching = 0;
-    bool is_cut_short = false;           // a list was full: at least so many
-    std::vector<TriangleIds> triangles;  // the first few, lowest indices first
-    double clearance_mm = 0;             // kStopWithinMm: nothing nearer
+    bool is_cut_short = false;                // a list was full: at least so many
+    std::vector<TriangleIds> triangles;       // the first few, lowest indices first
+    double clearance_mm = 0;                  // kStopWithinMm: nothing nearer
+    TriangleIds nearest{kNoIndex, kNoIndex};  // of least clearance, where that is known
     double margin_mm = 0;
     Containment containment = Containment::not_proven;
 };

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "config/text/quote_text.hpp"
 #include "core/base/sincos.hpp"
 #include "firmware_if/cli/limit_text.hpp"
@@ -62,7 +64,11 @@ void print_stop(const ReplayReport& report, const StopEvent& stop, const char* t
                    escaped(step->block));
     }
     fmt::print(words, "\n  {}\n", axes_text(machine, stop.snapshot));
+    const auto why = report.whys.find(&stop);
     if (!is_about_distance(stop.reason)) {
+        if (why != report.whys.end()) {
+            fmt::print(words, "{}", format_why(machine, why->second));
+        }
         return;
     }
     for (const PairAtStop& pair : pairs_at(report, stop)) {
@@ -78,6 +84,9 @@ void print_stop(const ReplayReport& report, const StopEvent& stop, const char* t
             fmt::print(words, "  {:<18} clearance at least {:.4f} mm, margin {:g} mm\n",
                        pair_name(machine, pair.pair), pair.clearance_mm, pair.margin_mm);
         }
+    }
+    if (why != report.whys.end()) {
+        fmt::print(words, "{}", format_why(machine, why->second));
     }
     const std::string escapes = format_escapes(machine, escapes_at(report, stop));
     if (!escapes.empty()) {
@@ -282,6 +291,21 @@ void print_run(const ReplayReport& report, std::FILE* words) {
 }
 
 }  // namespace
+
+void explain_stops(ReplayReport& report) {
+    const WhySources sources{report.loaded, report.engine.engine(), &report.run.limits()};
+    const auto explain = [&](const StopEvent& stop) {
+        if (auto why = why_of(sources, {stop.reason, stop.pair, stop.snapshot, stop.unproven})) {
+            report.whys.emplace(&stop, std::move(*why));
+        }
+    };
+    if (report.run.withheld().samples != 0) {
+        explain(report.run.withheld());
+    }
+    for (const StopEvent& stop : report.run.stops()) {
+        explain(stop);
+    }
+}
 
 void print_replay(const ReplayReport& report, std::FILE* words) {
     print_run(report, words);

@@ -4,12 +4,14 @@
 #pragma once
 
 #include <cstdio>
+#include <map>
 #include <string>
 
 #include "core/collision/containment.hpp"
 #include "core/collision/cpu_engine.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
 #include "hil_replay/replay/replay_run.hpp"
+#include "hil_replay/replay/why_stop.hpp"
 #include "hil_replay/trace/program_lines.hpp"
 #include "hil_replay/trace/trace_reader.hpp"
 
@@ -26,7 +28,11 @@ struct ReplayReport {
     bool is_realtime = false;
     TraceEnd end{};
     ProgramLines lines{};  // empty: no table of them
+    // Of the run's stops that are about a pair, and of the first sample withheld.
+    std::map<const StopEvent*, StopWhy> whys{};
 };
+/// Fills in `whys`: before anything is printed. Cost: as why_of, once a stop.
+void explain_stops(ReplayReport& report);
 
 void print_replay(const ReplayReport& report, std::FILE* words);
 

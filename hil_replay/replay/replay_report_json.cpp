@@ -56,11 +56,17 @@ Json stop_json(const ReplayReport& report, const StopEvent& stop) {
                              {"touching", pair.touching},
                              {"touching_cut_short", pair.is_cut_short},
                              {"triangles", std::move(triangles)}});
+            if (pair.nearest.a != kNoIndex && pair.nearest.b != kNoIndex) {
+                pairs.back()["nearest"] = {pair.nearest.a, pair.nearest.b};
+            }
             if (is_contained(pair)) {
                 pairs.back()["inside"] = nested_names(machine, pair).first;
             }
         }
         out["escapes"] = escapes_json(machine, escapes_at(report, stop));
+    }
+    if (const auto why = report.whys.find(&stop); why != report.whys.end()) {
+        out["why"] = why_json(machine, why->second);
     }
     return out;
 }
@@ -199,10 +205,13 @@ ReplayDocument describe_replay(const ReplayReport& report) {
         stops.push_back(stop_json(report, stop));
     }
     out["stop_count"] = run.stop_count();
+    Json shown = out["stops"];  // on a page
     if (run.withheld().samples != 0) {
         out["kept_back"] = stop_json(report, run.withheld());
+        shown.push_back(out["kept_back"]);
+        shown.back()["withheld"] = true;
     }
-    return {text_of(out), out["stops"].dump(-1, ' ', false, Json::error_handler_t::replace)};
+    return {text_of(out), shown.dump(-1, ' ', false, Json::error_handler_t::replace)};
 }
 
 }  // namespace axg

@@ -17,6 +17,7 @@
 #include "core/certificate/pair_queries.hpp"
 #include "core/collision/containment.hpp"
 #include "core/collision/engine.hpp"
+#include "core/guard/distance_need.hpp"
 #include "core/guard/monitor.hpp"
 #include "core/machine/configuration_hashes.hpp"
 #include "core/machine/machine.hpp"
@@ -93,6 +94,7 @@ struct StopEvent {
     AxisSnapshot snapshot{};                    // the last one
     std::uint64_t samples = 1;                  // how long the episode lasted
     std::int64_t stop_us = 0;  // of a trace that ends in motion: when the guard stops
+    UnprovenPair unproven{};   // stoppable mode: `pair`, as its proof failed
 };
 inline constexpr std::size_t kStopsKept = 64;
 /// Of a verdict or the input why, of any other stop what led to it.
@@ -194,6 +196,7 @@ class ReplayRun {
     void note_clearance_levels();
     void note_time(std::int64_t spent_ns, const AxisSnapshot& snapshot);
     void note_verdict(const CycleResult& result);
+    [[nodiscard]] UnprovenPair unproven(std::uint32_t pair) const noexcept;
     void note_guard();
     void note_fault(GuardFault cause, StopReason reason);
     void note_stop(const StopEvent& stop);

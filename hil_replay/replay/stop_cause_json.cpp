@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/sincos.hpp"
 #include "firmware_if/cli/limit_text.hpp"
 #include "hil_replay/replay/replay_csv.hpp"
 
@@ -10,6 +11,55 @@ namespace axg {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+Json remedies_json(const StopWhy& why) {
+    const NeedRemedies& remedies = why.remedies;
+    Json out = Json::object();
+    if (remedies.is_alone) {
+        out["alone"] = true;
+    }
+    if (remedies.speed_share) {
+        out["speed_share"] = *remedies.speed_share;
+    }
+    if (remedies.margin_mm) {
+        out["margin_mm"] = *remedies.margin_mm;
+    }
+    if (remedies.queries) {
+        out["queries"] = *remedies.queries;
+    }
+    if (remedies.are_other_limits) {
+        out["limits"] = why.other_limits;
+    }
+    return out;
+}
+
+Json vector_json(Vec3d v) {
+    return {v.x, v.y, v.z};
+}
+
+void add_reach(const Machine& machine, const StopWhy& why, Json& out) {
+    Json& axes = out["reach"] = Json::object();
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+        const bool is_rotary = machine.axes[i].kind == AxisKind::rotary;
+        const double unit = is_rotary ? 180.0 / kPi : 1.0;
+        const double centre = why.reach.centre[i], half = why.reach.half[i];
+        axes[machine.axes[i].name + (is_rotary ? "_deg" : "_mm")] = {(centre - half) * unit,
+                                                                     (centre + half) * unit};
+    }
+    Json& bodies = out["reach_bodies"] = Json::array();
+    for (const ReachBody& body : why.bodies) {
+        Json rows = Json::array();
+        for (int i = 0; i < 3; ++i) {
+            const Pose& p = body.placed;
+            rows.push_back({p.r[i][0], p.r[i][1], p.r[i][2], p.t[i]});
+        }
+        bodies.push_back({{"body", machine.bodies[body.body].name},
+                          {"moves_mm", body.moves_mm},
+                          {"low_mm", vector_json(body.low_mm)},
+                          {"high_mm", vector_json(body.high_mm)},
+                          {"placed", std::move(rows)}});
+    }
+}
 
 Json limit_json(const LimitFact& fact, const Machine& machine) {
     const Axis& axis = machine.axes[fact.axis];
@@ -36,6 +86,42 @@ void add_stop_cause(const Machine& machine, StopReason reason, std::uint32_t pai
     if (reason == StopReason::left_limits) {
         out["limit"] = limit_json(limit, machine);
     }
+}
+
+Json why_json(const Machine& machine, const StopWhy& why) {
+    const DistanceNeed& need = why.need;
+    Json out{{"cause", to_text(why.cause)}, {"pair", pair_name(machine, why.pair)}};
+    if (why.tool != kNoIndex) {
+        out["tool"] = machine.tools[why.tool].number;
+    }
+    if (why.cause == WhyCause::contained || why.cause == WhyCause::not_known) {
+        return out;
+    }
+    out.update(Json{{"needed_mm", need.sum_mm()},
+                    {"available_mm", why.available_mm},
+                    {"within_mm", why.within_mm},
+                    {"margin_mm", need.margin_mm},
+                    {"arithmetic_mm", need.arithmetic_mm},
+                    {"list_full", why.is_list_full}});
+    if (why.has_reach) {
+        out["worst_mm"] = why.worst_mm;
+        out["queries"] = why.queries;
+        if (why.is_whole) {
+            out["to_standstill_mm"] = need.until_braking_mm;
+        } else {
+            out["until_braking_mm"] = need.until_braking_mm;
+            out["braking_mm"] = need.braking_mm;
+            out["position_error_mm"] = need.position_error_mm;
+            out["speed_uncertainty_mm"] = need.speed_uncertainty_mm;
+        }
+        if (why.open) {
+            out["open"] = {{"needed_mm", why.open->needed_mm},
+                           {"available_mm", why.open->available_mm}};
+        }
+        add_reach(machine, why, out);
+    }
+    out["remedies"] = remedies_json(why);
+    return out;
 }
 
 }  // namespace axg

@@ -9,6 +9,7 @@
 #include "core/guard/monitor.hpp"
 #include "core/machine/machine.hpp"
 #include "firmware_if/receiver/receiver_faults.hpp"
+#include "hil_replay/replay/why_stop.hpp"
 
 namespace axg {
 
@@ -18,5 +19,8 @@ namespace axg {
 /// @param limit  of reason left_limits
 void add_stop_cause(const Machine& machine, StopReason reason, std::uint32_t pair,
                     ReceiverFault fault, const LimitFact& limit, nlohmann::ordered_json& out);
+
+/// Keys: docs/reference/json.md.
+[[nodiscard]] nlohmann::ordered_json why_json(const Machine& machine, const StopWhy& why);
 
 }  // namespace axg

@@ -72,6 +72,35 @@ def check_touching(browser, results):
     check(wanted > 0 and drawn >= wanted, f"{drawn} marks, wanted at least {wanted}")
 
 
+def check_why(browser, results, mode):
+    """Figures of the stop are in the table; in stoppable mode both bodies lie in their boxes."""
+    why = results["stops"][0]["why"]
+    rows = browser.execute_script("return document.getElementById('why_parts').innerText")
+    for key in ("needed_mm", "available_mm"):
+        check(f"{why[key]:.4f} mm" in rows, f"{mode}: no {key} in {rows}")
+    check(why["pair"] in browser.find_element("id", "why_sum").text, f"{mode}: why without a pair")
+    boxes, outside, hidden = browser.execute_script("""
+        const view = axguard.view, stop = axguard.stops[0], boxes = stop.why.reach_bodies || [];
+        let outside = 0;
+        for (const {body, low_mm, high_mm, placed} of boxes) {
+          const i = axguard.data.machine.bodies.findIndex((one) => one.name === body);
+          const [mesh, at] = view.surfaceOf(i);
+          const back = new THREE.Matrix4().getInverse(matrixOf(placed)).multiply(at);
+          for (let k = 0; k < mesh.points.length; k += 3) {
+            const p = new THREE.Vector3(...mesh.points.slice(k, k + 3)).applyMatrix4(back);
+            outside += ["x", "y", "z"].some((c, n) => p[c] < low_mm[n] || p[c] > high_mm[n]);
+          }
+        }
+        const box = document.getElementById("reach"), shown = view.reach.children.length;
+        box.click();
+        const hidden = view.reach.children.length;
+        box.click();
+        return [shown, outside, hidden];""")
+    wanted = 4 if mode == "stoppable" else 0  # a box and its edges, of two bodies
+    check(boxes == wanted and hidden == 0, f"{mode}: {boxes} parts of the reach, {hidden} hidden")
+    check(outside == 0, f"{mode}: {outside} points outside of the reach")
+
+
 def check_lines(browser):
     """The picture's own kinematics against the engine's clearance."""
     lines = browser.execute_script("""
@@ -358,6 +387,7 @@ def main():
                 check_stop(browser, results, table)
                 if mode == "contact":
                     check_touching(browser, results)
+                check_why(browser, results, mode)
                 check_contact(browser, mode)
                 check_sizes(browser, mode)
             check_contrast(browser)

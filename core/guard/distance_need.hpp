@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// Why a pair was not proven: the distance that its proof needs, in parts, against the distance
+// available, and the changes that prove it. For reports, after the cycle.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "core/certificate/stop_certificate.hpp"
+#include "core/collision/engine.hpp"
+#include "core/machine/machine.hpp"
+
+namespace axg {
+
+/// One pair of a cycle, as its proof failed, for use when the certificate has gone on.
+struct UnprovenPair {
+    bool is_known = false;
+    // The reach is that of a look-ahead path or of a jog: it has no parts, and no speed to lower.
+    bool is_whole = false;
+    bool is_jog = false;            // the margin is the floor of the jog
+    bool is_blind = false;          // too little is known of the motion: nothing was queried
+    std::uint32_t tool = kNoIndex;  // Machine::tools; kNoIndex: none in this pair
+    JointBoxTask task;              // without pieces
+    JointBoxResult result;
+    AxisSnapshot snapshot;
+    double free_s = 0;
+    std::array<AxisRange, kAxesMax> now{};
+    std::array<AxisLimits, kAxesMax> limits{};
+    std::array<double, kAxesMax> position_error{};
+};
+/// The first proof of `pair` that failed in the certificate's last cycle.
+[[nodiscard]] UnprovenPair unproven_pair(const Machine& machine, const StopCertificate& certificate,
+                                         std::uint32_t pair) noexcept;
+
+/// Distance at the sampled position from which the pair keeps its margin everywhere in the reach,
+/// mm. Of a reach that is one whole, all of it is `until_braking_mm`.
+struct DistanceNeed {
+    double margin_mm = 0;
+    double until_braking_mm = 0;      // motion at the speed now, until braking must have begun
+    double braking_mm = 0;            // from there to standstill
+    double position_error_mm = 0;     // uncertainty of the position
+    double speed_uncertainty_mm = 0;  // uncertainty of speed and acceleration
+    double arithmetic_mm = 0;         // placement, and simplified surfaces
+
+    [[nodiscard]] double sum_mm() const noexcept {
+        return margin_mm + until_braking_mm + braking_mm + position_error_mm +
+               speed_uncertainty_mm + arithmetic_mm;
+    }
+};
+[[nodiscard]] DistanceNeed distance_need(const Machine& machine, const UnprovenPair& pair) noexcept;
+
+/// Certified clearance at the sampled position, mm, never more than `within_mm`. 0: none.
+[[nodiscard]] double available_mm(const Machine& machine, const Engine& engine,
+                                  const UnprovenPair& pair, double within_mm) noexcept;
+
+/// Least clearance found at the sampled position, at the corners of the reach and at the centre of
+/// the part that was left open, mm: an upper bound of the worst case. Never more than `within_mm`.
+/// Cost: one query a corner, at most 2^kAxesMax.
+[[nodiscard]] double least_clearance_mm(const Machine& machine, const Engine& engine,
+                                        const UnprovenPair& pair, double within_mm) noexcept;
+
+/// The first part of the reach that the halving left open: the same two figures at its centre.
+struct OpenPart {
+    double needed_mm = 0, available_mm = 0;
+};
+/// Nothing: the reach was not halved.
+[[nodiscard]] std::optional<OpenPart> open_part(const Machine& machine, const Engine& engine,
+                                                const UnprovenPair& pair) noexcept;
+
+/// What is different in a second proof of the pair.
+struct ProofChange {
+    double speed_share = 1;
+    double margin_share = 1;
+    const std::array<AxisLimits, kAxesMax>* limits = nullptr;  // in place of the pair's
+};
+/// The pair proven over its reach after the change, by itself, with the plan in force.
+[[nodiscard]] bool is_proven_with(const Machine& machine, const Engine& engine,
+                                  const UnprovenPair& pair, const ProofChange& change);
+
+/// Changes that prove the pair; each was queried again. Empty: none of them does.
+struct NeedRemedies {
+    bool is_alone = false;  // proven by itself: the lists of the cycle were shared
+    std::optional<double> speed_share;
+    std::optional<double> margin_mm;       // less than the pair's
+    std::optional<std::uint32_t> queries;  // used with a larger plan
+    bool are_other_limits = false;         // with the limits that were passed
+};
+struct RemedySearch {
+    bool tries_plans = true;  // of no use where a position in the reach is too near
+    const std::array<AxisLimits, kAxesMax>* limits = nullptr;  // tried too; null: none
+};
+/// Memory is taken for each plan that is tried. Not for a cycle.
+/// Cost: at most the plan 18 times, and 36'864 queries where plans are tried.
+[[nodiscard]] NeedRemedies find_remedies(const Machine& machine, const Engine& engine,
+                                         const UnprovenPair& pair, const RemedySearch& search);
+
+}  // namespace axg

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// Why the guard stopped, or gave no permit: what the shown stop says in `why`
+// (docs/reference/json.md), as a table with bars and as sentences.
+"use strict";
+
+const WHY_PARTS = [
+  ["to_standstill_mm", "motion to standstill"],
+  ["until_braking_mm", "motion until braking"],
+  ["braking_mm", "braking"],
+  ["position_error_mm", "uncertainty of position"],
+  ["speed_uncertainty_mm", "uncertainty of speed"],
+  ["margin_mm", "margin to keep"],
+  ["arithmetic_mm", "arithmetic"],
+];
+
+const WHY_CAUSES = {
+  margin: "nearer than its margin",
+  contained: "one body is inside the other",
+  reach: "a position that the axes can reach is too near",
+  halving: "the halving of the reach was not finished",
+  shared: "the lists of the cycle were shared with other pairs",
+  capacity: "a list of the engine was full",
+  not_known: "too little is known of the motion to come",
+  not_proven: "no proof was found",
+};
+
+/** [label, mm, class] of each row; none where the stop is no matter of distance. */
+function whyRows(why) {
+  if (why.needed_mm === undefined) return [];
+  const isFar = why.available_mm >= why.within_mm;
+  return [
+    ...WHY_PARTS.filter(([key]) => why[key] !== undefined).map(([key, label]) =>
+      [label, why[key], ""]),
+    ["needed", why.needed_mm, "sum"],
+    [isFar ? "available, at least" : "available", why.available_mm, "has"],
+  ];
+}
+
+/** What the table does not show. */
+function whySentences(why) {
+  const out = [], mm = (value) => `${value.toFixed(4)} mm`;
+  if (why.worst_mm !== undefined) {
+    const worst = why.worst_mm > 0 ? mm(why.worst_mm) : "a contact";
+    out.push(`worst case found, to standstill: ${worst}`);
+  }
+  if (why.open) {
+    out.push(`halving: ${why.queries} queries; the first part left open needs
+              ${mm(why.open.needed_mm)} and has ${mm(why.open.available_mm)}`);
+  }
+  const {remedies} = why;
+  if (!remedies) return out;
+  const proven = [];
+  if (remedies.alone) proven.push("the lists of the cycle for this pair alone");
+  if (remedies.speed_share !== undefined) {
+    proven.push(remedies.speed_share > 0
+      ? `${Math.round(100 * remedies.speed_share)} % of this speed` : "standstill");
+  }
+  if (remedies.margin_mm !== undefined) {
+    proven.push(`a margin of ${remedies.margin_mm.toFixed(3)} mm`);
+  }
+  if (remedies.queries) proven.push(`a larger plan: ${remedies.queries} queries of this pair`);
+  if (remedies.limits) proven.push(`limits as this trace shows them: ${remedies.limits}`);
+  out.push(proven.length > 0 ? `proven with: ${proven.join("; ")}`
+                             : "nothing that was tried proves it");
+  return out;
+}
+
+/** Shows `why`, or hides the section where there is none. */
+function writeWhy(why) {
+  const byId = (id) => document.getElementById(id);
+  byId("why_section").hidden = !why;
+  if (!why) return;
+  const tool = why.tool === undefined ? "" : `, tool ${why.tool}`;
+  byId("why_sum").textContent = `${why.pair}${tool}: ${WHY_CAUSES[why.cause] || why.cause}`;
+  const rows = whyRows(why), most = Math.max(1e-9, ...rows.map(([, value]) => value));
+  byId("why_parts").tBodies[0].replaceChildren(...rows.map(([label, value, name]) => {
+    const row = document.createElement("tr"), head = document.createElement("th");
+    const figure = document.createElement("td"), bar = document.createElement("td");
+    const length = document.createElement("i");
+    row.className = name;
+    head.scope = "row";
+    head.textContent = label;
+    figure.textContent = `${value.toFixed(4)} mm`;
+    length.style.width = `${100 * value / most}%`;
+    bar.append(length);
+    row.append(head, figure, bar);
+    return row;
+  }));
+  byId("why_more").replaceChildren(...whySentences(why).map((sentence) => {
+    const item = document.createElement("li");
+    item.textContent = sentence.replace(/\s+/g, " ");
+    return item;
+  }));
+  byId("reach_label").hidden = !why.reach_bodies;
+}

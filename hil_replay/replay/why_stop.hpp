@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// Why a stop, or a permit withheld: the distance that the proof needed, the distance available, and
+// the changes that would have proven it. For the report.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/certificate/reach_bodies.hpp"
+#include "core/collision/engine.hpp"
+#include "core/guard/distance_need.hpp"
+#include "core/guard/monitor.hpp"
+#include "firmware_if/setup/loaded_machine.hpp"
+#include "hil_replay/trace/limit_survey.hpp"
+
+namespace axg {
+
+enum class WhyCause : std::uint8_t {
+    margin,      // contact mode: the pair is nearer than its margin
+    contained,   // one body is inside the other: no distance is enough
+    reach,       // a position in the reach is nearer than the margin
+    halving,     // a larger plan proves it: halving was not finished
+    shared,      // by itself it is proven: the lists of the cycle were shared
+    capacity,    // a list of the engine was full
+    not_known,   // too little was known of the motion: nothing was queried
+    not_proven,  // none of these was found
+};
+[[nodiscard]] const char* to_text(WhyCause cause) noexcept;
+
+struct StopWhy {
+    WhyCause cause = WhyCause::margin;
+    std::uint32_t pair = kNoIndex;
+    std::uint32_t tool = kNoIndex;  // Machine::tools; kNoIndex: the one in the spindle, or none
+    DistanceNeed need;
+    bool is_whole = false;  // need.until_braking_mm is the whole reach
+    bool is_jog = false;    // need.margin_mm is the floor of the jog
+    bool is_list_full = false;
+    std::uint32_t queries = 0;  // of the proof that failed
+    double available_mm = 0;    // certified at the sampled position
+    double within_mm = 0;       // clearances were measured up to this
+    double worst_mm = 0;        // least clearance found in the reach
+    std::optional<OpenPart> open;
+    NeedRemedies remedies;
+    std::string other_limits;  // those that `are_other_limits` is about
+    bool has_reach = false;
+    JointBox reach;                 // every position of the axes that was to be proven
+    std::vector<ReachBody> bodies;  // the pair's, in it
+};
+
+/// A stop, or a permit withheld, as its cycle left it.
+struct StopFacts {
+    StopReason reason = StopReason::none;
+    std::uint32_t pair = kNoIndex;
+    const AxisSnapshot& snapshot;
+    const UnprovenPair& unproven;  // not known: of contact mode, or not about a certificate
+};
+/// What is queried again about it.
+struct WhySources {
+    const LoadedMachine& loaded;
+    Engine engine;
+    const LimitSurvey* limits = nullptr;  // null: the motion was not measured
+};
+/// Nothing: the stop is not about the distance of a pair.
+/// Cost: as find_remedies; milliseconds to a second.
+[[nodiscard]] std::optional<StopWhy> why_of(const WhySources& sources, const StopFacts& stop);
+/// Lines of a report, each with its end.
+[[nodiscard]] std::string format_why(const Machine& machine, const StopWhy& why);
+
+}  // namespace axg

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+// Why a stop, as lines of the report.
+#include <fmt/format.h>
+
+#include <string>
+
+#include "hil_replay/replay/replay_csv.hpp"
+#include "hil_replay/replay/why_stop.hpp"
+
+namespace axg {
+namespace {
+
+std::string name_of(const Machine& machine, const StopWhy& why) {
+    return pair_name(machine, why.pair) +
+           (why.tool == kNoIndex ? "" : fmt::format(", tool {}", machine.tools[why.tool].number));
+}
+
+std::string available_text(const StopWhy& why) {
+    if (why.available_mm <= 0) {
+        return "has none";
+    }
+    return fmt::format("has {}{:.4f} mm", why.available_mm < why.within_mm ? "" : "at least ",
+                       why.available_mm);
+}
+
+std::string parts_text(const StopWhy& why) {
+    const DistanceNeed& need = why.need;
+    std::string text;
+    if (why.cause != WhyCause::margin && why.cause != WhyCause::capacity && why.is_whole) {
+        text = fmt::format("motion to standstill {:.4f}, ", need.until_braking_mm);
+    } else if (need.until_braking_mm + need.braking_mm + need.position_error_mm +
+                   need.speed_uncertainty_mm >
+               0) {
+        text = fmt::format(
+            "motion until braking {:.4f}, braking {:.4f}, uncertainty of position {:.4f}, of speed "
+            "{:.4f}, ",
+            need.until_braking_mm, need.braking_mm, need.position_error_mm,
+            need.speed_uncertainty_mm);
+    }
+    return text + fmt::format("{} {:g}, arithmetic {:.2g} mm",
+                              why.is_jog ? "clearance to keep in this jog" : "margin",
+                              need.margin_mm, need.arithmetic_mm);
+}
+
+std::string remedies_text(const StopWhy& why) {
+    std::string text;
+    const auto add = [&text](const std::string& remedy) {
+        text += (text.empty() ? "" : "; ") + remedy;
+    };
+    const NeedRemedies& remedies = why.remedies;
+    if (remedies.is_alone) {
+        add("the lists of the cycle for this pair alone (cycle: in the machine file)");
+    }
+    if (remedies.speed_share) {
+        add(*remedies.speed_share > 0
+                ? fmt::format("{:.0f} % of this speed", *remedies.speed_share * 100)
+                : "standstill");
+    }
+    if (remedies.margin_mm) {
+        add(fmt::format("a margin of {:.3f} mm", *remedies.margin_mm));
+    }
+    if (remedies.queries) {
+        add(fmt::format("a larger plan: {} queries of this pair (cycle: in the machine file)",
+                        *remedies.queries));
+    }
+    if (remedies.are_other_limits) {
+        add("limits as this trace shows them: " + why.other_limits);
+    }
+    return text;
+}
+
+}  // namespace
+
+const char* to_text(WhyCause cause) noexcept {
+    switch (cause) {
+        case WhyCause::margin:
+            return "margin";
+        case WhyCause::contained:
+            return "contained";
+        case WhyCause::reach:
+            return "reach";
+        case WhyCause::halving:
+            return "halving";
+        case WhyCause::shared:
+            return "shared";
+        case WhyCause::capacity:
+            return "capacity";
+        case WhyCause::not_known:
+            return "not_known";
+        case WhyCause::not_proven:
+            break;
+    }
+    return "not_proven";
+}
+
+std::string format_why(const Machine& machine, const StopWhy& why) {
+    std::string text = fmt::format("  why ({}): {} ", to_text(why.cause), name_of(machine, why));
+    if (why.cause == WhyCause::contained) {
+        return text + "is no matter of distance: one body is inside the other\n";
+    }
+    if (why.cause == WhyCause::not_known) {
+        return text + "was not queried: too little is known of the motion to come\n";
+    }
+    text += fmt::format("needs {:.4f} mm and {}\n    {}\n", why.need.sum_mm(), available_text(why),
+                        parts_text(why));
+    if (why.has_reach) {
+        text += why.worst_mm > 0
+                    ? fmt::format("    worst case found, to standstill: {:.4f} mm\n", why.worst_mm)
+                    : "    worst case found, to standstill: a contact\n";
+    }
+    if (why.open) {
+        text += fmt::format(
+            "    halving: {} queries; the first part left open needs {:.4f} mm and has {:.4f} mm\n",
+            why.queries, why.open->needed_mm, why.open->available_mm);
+    }
+    if (why.is_list_full) {
+        text += "    a list of the engine was full (cycle: in the machine file)\n";
+    }
+    const std::string remedies = remedies_text(why);
+    return text + (remedies.empty() ? "    nothing that was tried proves it\n"
+                                    : fmt::format("    proven with: {}\n", remedies));
+}
+
+}  // namespace axg
