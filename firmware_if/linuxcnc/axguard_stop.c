@@ -42,7 +42,8 @@ typedef struct stop_pins {
     hal_float_t* adaptive_feed;
     hal_bit_t *tool_change, *tool_changed, *tool_change_out, *tool_changed_in;
     hal_s32_t* tool_number;
-    hal_u32_t *number, *cause, *refusal, *permits, *left, *simulation_wait_us, *unheard, *last_stop;
+    hal_u32_t *number, *cause, *refusal, *permits, *left, *simulation_wait_us, *unheard, *last_stop,
+        *late;
 } stop_pins;
 
 typedef enum tool_step { TOOL_NONE, TOOL_WANTED, TOOL_OUT, TOOL_PERMIT, TOOL_DONE } tool_step;
@@ -69,6 +70,7 @@ typedef struct stop_state {
     uint64_t done;  // sample that was answered last
     bool waits;     // simulation-wait-us: somebody answers
     uint32_t ramp_periods;
+    int64_t clock_ns;  // of the host, when this period began
 } stop_state;
 
 static int comp_id;
@@ -387,11 +389,24 @@ static void show(const axg_board_motion* motion) {
     }
 }
 
+// The end of a permit is counted in periods: a period that comes late makes it late by as much.
+// Half a period is within the reaction of the machine file; more is a stop.
+static void check_clock(long period_ns) {
+    const int64_t before_ns = state.clock_ns;
+    state.clock_ns = rtapi_get_time();
+    const bool is_late = state.clock_ns - before_ns > (int64_t)period_ns + period_ns / 2;
+    if (before_ns != 0 && is_late && *pins->simulation_wait_us == 0) {
+        ++*pins->late;
+        axg_board_stop(&state.board, now_us());
+    }
+}
+
 static void update(void* unused, long period_ns) {
     (void)unused;
     double wanted[AXG_WIRE_JOINTS_MAX];
     ++state.count;
     state.period_us = (uint64_t)(period_ns + 500) / 1000;
+    check_clock(period_ns);
     take_messages();
     wait_for_the_guard();
     arm();
@@ -451,6 +466,7 @@ static int make_pins(void) {
     NEW_PIN(u32, HAL_OUT, &pins->permits, "axguard-stop.permits");
     NEW_PIN(u32, HAL_OUT, &pins->left, "axguard-stop.left-us");
     NEW_PIN(u32, HAL_OUT, &pins->last_stop, "axguard-stop.last-stop-periods");
+    NEW_PIN(u32, HAL_OUT, &pins->late, "axguard-stop.late-periods");
     NEW_PIN(u32, HAL_OUT, &pins->unheard, "axguard-stop.simulation-unheard");
     NEW_PIN(u32, HAL_IN, &pins->simulation_wait_us, "axguard-stop.simulation-wait-us");
     return fault ? fault : hal_export_funct("axguard-stop", update, NULL, 1, 0, comp_id);

@@ -99,12 +99,23 @@ def is_due(event, began):
     return time.time() - began >= event["after_s"]
 
 
+def guard_process():
+    line = subprocess.run(["halcmd", "-s", "show", "comp", "axguard-hal"], capture_output=True,
+                          text=True, check=True).stdout.split()
+    return int(line[line.index("axguard-hal") + 1])
+
+
 def act(event):
     RESULT["events"].append([event["do"], pin("axguard-stop.sample")])
     if event["do"] == "kill":  # the guard, which can tell nobody
-        line = subprocess.run(["halcmd", "-s", "show", "comp", "axguard-hal"], capture_output=True,
-                              text=True, check=True).stdout.split()
-        os.kill(int(line[line.index("axguard-hal") + 1]), signal.SIGKILL)
+        os.kill(guard_process(), signal.SIGKILL)
+    elif event["do"] == "late":  # the servo thread waits, and meanwhile it becomes a real one
+        guard = guard_process()
+        os.kill(guard, signal.SIGSTOP)
+        time.sleep(0.1)
+        set_pin("axguard-stop.simulation-wait-us", 0)
+        time.sleep(0.6)
+        os.kill(guard, signal.SIGCONT)
     elif event["do"] == "feed":
         COMMAND.feedrate(event["value"])
 
@@ -125,7 +136,8 @@ def main():
             RESULT["pins"] = {name: pin(name) for name in (
                 "axguard-stop.cause", "axguard-stop.permits", "axguard-stop.last-stop-periods",
                 "axguard-stop.simulation-unheard", "axguard.late", "axguard.samples-lost",
-                "axguard.stops", "axguard-stop.refusal", "axguard-stop.estop-ok",
+                "axguard.stops", "axguard-stop.late-periods", "axguard-stop.refusal",
+                "axguard-stop.estop-ok",
                 "axguard.phase")}
         if SCENARIO.get("again"):
             RESULT["on_again"] = arm() and switch_on()

@@ -19,6 +19,7 @@ PERIOD_S = 1e-3
 # Of the machine files in firmware_if/linuxcnc/examples.
 STOPPING = {"paper-trunnion": [3500, 3500, 3500, 500, 1000], "xyzac-trt": [400] * 5}
 REACTION_PERIODS = 2
+CAUSE_PERSON = 8
 TOOL_OF = {"paper-trunnion": 1, "xyzac-trt": 5}
 HEAD = "T1 M6\nG21 G90 G94\n"
 # Into the plate (tests/can_vm/collide.ngc).
@@ -54,6 +55,7 @@ def scenarios(source):
         "kill": (SWING, True, {"events": kill}),
         "kill_approach": (COLLIDE, True, {"events": [
             {"do": "kill", "pin": "axguard-stop.2.position", "below": -60}]}),
+        "late": (SWING, True, {"events": [{"do": "late", "after_s": 1.5}]}),
         "feed": (SWING, False, {"events": feed}),
         "unguarded": (COLLIDE, False, {}),
         "xyzac_clean": (TIP_CLEAN, False, {}),
@@ -62,8 +64,8 @@ def scenarios(source):
     }
 
 
-USUAL = ["clean", "collide", "collide_feed", "kill", "kill_approach", "feed", "unguarded",
-         "xyzac_clean", "xyzac_collide"]
+USUAL = ["clean", "collide", "collide_feed", "kill", "kill_approach", "late", "feed",
+         "unguarded", "xyzac_clean", "xyzac_collide"]
 
 
 def stop_facts(rows, stopping):
@@ -104,7 +106,7 @@ def check(name, is_stopped, said, rows, overruns, judged, facts):
         if not judged["stops"]:
             faults.append("unguarded: the judge saw no contact: it would see none elsewhere")
         return faults
-    if not said["armed"]:
+    if not said["armed"] or "pins" not in said:
         return faults + [f"{name}: not armed"]
     wanted = "stopped" if is_stopped else "done"
     if said["ended"] != wanted:
@@ -123,6 +125,8 @@ def check(name, is_stopped, said, rows, overruns, judged, facts):
             faults.append(f"{name}: a joint turned round in the stop")
     if name.startswith("kill") and said["pins"]["axguard-stop.cause"] != "3":
         faults.append(f"{name}: the stop has another cause than the end of the permit")
+    if name == "late" and said["pins"]["axguard-stop.cause"] != str(CAUSE_PERSON):
+        faults.append("late: the stop has another cause than the late period")
     if name == "collide" and not said.get("on_again"):
         faults.append("collide: not armed and switched on again after the stop")
     return faults

@@ -95,8 +95,9 @@ class Place:
                             f"loadrt sampler depth=16000 cfg={COLUMNS}\n"
                             "loadrt axguard_stop joints=5")
         text = text.replace("loadusr -W axguard-hal", f"loadusr -W {self.folder}/axguard-hal")
-        if simulation_wait_us != 0:
-            text = text.replace("--mesh-root", "--simulation --mesh-root")
+        if simulation_wait_us == 0:
+            text = text.replace("--simulation ", "")
+        text = re.sub(r"(simulation-wait-us) \d+", rf"\1 {simulation_wait_us}", text)
         text = text.replace("addf and2.0 ", "addf sampler.0 servo-thread\naddf and2.0 ")
         if not guarded:  # the joints are where LinuxCNC sends them, and nobody is asked
             text = re.sub(r"loadusr -W .*", "", text)
@@ -117,7 +118,6 @@ class Place:
                  "net permit axguard-stop.permit-ok => sampler.0.pin.6\n"
                  "net stopping axguard-stop.stopping => sampler.0.pin.7\n"
                  "net left axguard-stop.left-us => sampler.0.pin.8\n"
-                 f"setp axguard-stop.simulation-wait-us {simulation_wait_us}\n"
                  f"loadusr halsampler -t {self.folder}/{SAMPLES}\n")
         hal.write_text(text, encoding="utf-8")
 
