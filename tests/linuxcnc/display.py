@@ -116,6 +116,8 @@ def act(event):
         set_pin("axguard-stop.simulation-wait-us", 0)
         time.sleep(0.6)
         os.kill(guard, signal.SIGCONT)
+    elif event["do"] == "inhibit":
+        subprocess.run(["halcmd", "sets", "inhibit", "1"], check=True)
     elif event["do"] == "feed":
         COMMAND.feedrate(event["value"])
 

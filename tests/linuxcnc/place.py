@@ -116,7 +116,8 @@ class Place:
                          f"sampler.0.pin.{joint + 1}\n")
         text += ("net number axguard-stop.sample => sampler.0.pin.0\n"
                  "net permit axguard-stop.permit-ok => sampler.0.pin.6\n"
-                 "net stopping axguard-stop.stopping => sampler.0.pin.7\n"
+                 + ("net stopping axguard-stop.stopping => sampler.0.pin.7\n" if guarded else
+                    "net inhibit motion.feed-inhibit sampler.0.pin.7\n") +
                  "net left axguard-stop.left-us => sampler.0.pin.8\n"
                  f"loadusr halsampler -t {self.folder}/{SAMPLES}\n")
         hal.write_text(text, encoding="utf-8")
