@@ -5,6 +5,7 @@ ones are stopped by the joints' own ramps before contact, and so is a machine wh
 Usage: loop_test.py SOURCE BUILD [SCENARIO...] [--simulation-wait-us N] [--record FILE]"""
 import argparse
 import json
+import math
 import os
 import pathlib
 import shutil
@@ -17,10 +18,14 @@ from place import NotPossible, Place, module
 SKIPPED = 77
 PERIOD_S = 1e-3
 # Of the machine files in firmware_if/linuxcnc/examples.
-STOPPING = {"paper-trunnion": [3500, 3500, 3500, 500, 1000], "xyzac-trt": [400] * 5}
+STOPPING = {"paper-trunnion": [3500, 3500, 3500, 500, 1000], "xyzac-trt": [400] * 5,
+            "xyzbc-trt": [400] * 5}
 REACTION_PERIODS = 2
 CAUSE_PERSON = 8
-TOOL_OF = {"paper-trunnion": 1, "xyzac-trt": 5}
+# Of the machine files; and of the comparison with LinuxCNC's kinematics.
+PIVOT, TIP_LENGTH = {"xyzac-trt": (0, 20, 10), "xyzbc-trt": (-20, 0, -15)}, 30
+TIP_ERROR_MM = 1e-3
+TOOL_OF = {"paper-trunnion": 1, "xyzac-trt": 5, "xyzbc-trt": 5}
 HEAD = "T1 M6\nG21 G90 G94\n"
 # Into the plate (tests/can_vm/collide.ngc).
 COLLIDE = HEAD + "G0 X20 Y50\nG0 X0 Y107.132 A-19.2 C97\nG0 Z-230\nM2\n"
@@ -60,12 +65,36 @@ def scenarios(source):
         "unguarded": (COLLIDE, False, {}),
         "xyzac_clean": (TIP_CLEAN, False, {}),
         "xyzac_collide": (TIP_COLLIDE, True, {}),
+        "xyzbc_clean": (TIP_CLEAN.replace("A", "B"), False, {}),
+        "xyzbc_collide": (TIP_COLLIDE.replace("A", "B"), True, {}),
         "clean_whole": (clean_program(source, None), False, {}),
     }
 
 
 USUAL = ["clean", "collide", "collide_feed", "kill", "kill_approach", "late", "feed",
-         "unguarded", "xyzac_clean", "xyzac_collide"]
+         "unguarded", "xyzac_clean", "xyzac_collide", "xyzbc_clean", "xyzbc_collide"]
+
+
+def tip_error(rows, machine):
+    """How far LinuxCNC's live kinematics and the machine file differ, mm: while A or B tilts and C
+    turns the tool's tip has to stay at X20 Y0 Z60 of the workpiece. And in how many periods."""
+    worst, count = 0, 0
+    px, py, pz = PIVOT[machine]
+    for _, x, y, z, tilt_deg, c_deg, *_ in rows:
+        if not (-19 < tilt_deg < -1 and 0 < c_deg < 45):
+            continue
+        tilt, c = math.radians(tilt_deg), math.radians(c_deg)
+        x, y, z = x - px, y - py, z - TIP_LENGTH - pz
+        if machine == "xyzac-trt":
+            y, z = (math.cos(tilt) * y + math.sin(tilt) * z,
+                    -math.sin(tilt) * y + math.cos(tilt) * z)
+        else:
+            x, z = (math.cos(tilt) * x - math.sin(tilt) * z,
+                    math.sin(tilt) * x + math.cos(tilt) * z)
+        x, y, z = x + px, y + py, z + pz
+        x, y = math.cos(c) * x + math.sin(c) * y, -math.sin(c) * x + math.cos(c) * y
+        worst, count = max(worst, math.dist((x, y, z), (20, 0, 60))), count + 1
+    return worst, count
 
 
 def stop_facts(rows, stopping):
@@ -125,6 +154,11 @@ def check(name, is_stopped, said, rows, overruns, judged, facts):
             faults.append(f"{name}: a joint turned round in the stop")
     if name.startswith("kill") and said["pins"]["axguard-stop.cause"] != "3":
         faults.append(f"{name}: the stop has another cause than the end of the permit")
+    if name in ("xyzac_clean", "xyzbc_clean"):
+        worst, count = tip_error(rows, f"{name[:5]}-trt")
+        print(f"{name}: live kinematics: {worst:.2e} mm off at most, {count} periods")
+        if count < 1000 or worst > TIP_ERROR_MM:
+            faults.append(f"{name}: LinuxCNC's kinematics are not those of the machine file")
     if name == "late" and said["pins"]["axguard-stop.cause"] != str(CAUSE_PERSON):
         faults.append("late: the stop has another cause than the late period")
     if name == "collide" and not said.get("on_again"):
@@ -138,7 +172,7 @@ def run_all(given):
     faults, facts_of = [], {}
     for name in given.scenario or USUAL:
         program, is_stopped, more = scenarios(given.source)[name]
-        machine = "xyzac-trt" if name.startswith("xyzac") else "paper-trunnion"
+        machine = f"{name[:5]}-trt" if name.startswith("xyz") else "paper-trunnion"
         place = Place(folder / name, given.source, given.build, machine)
         place.prepare(program, name != "unguarded", given.simulation_wait_us,
                       limit_s=given.limit_s, **more)
