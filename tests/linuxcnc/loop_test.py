@@ -6,7 +6,6 @@ Usage: loop_test.py SOURCE BUILD [SCENARIO...] [--simulation-wait-us N] [--recor
 import argparse
 import json
 import math
-import os
 import pathlib
 import shutil
 import sys
@@ -167,8 +166,10 @@ def check(name, is_stopped, said, rows, overruns, judged, facts):
 
 
 def run_all(given):
-    folder = given.keep or pathlib.Path(tempfile.mkdtemp(prefix="axg-linuxcnc-"))
-    os.chmod(folder, 0o755) if folder.exists() else None
+    # Not in a folder of root's own: LinuxCNC runs as somebody else.
+    folder = given.keep or pathlib.Path(tempfile.mkdtemp(prefix="axg-linuxcnc-", dir="/tmp"))
+    folder.mkdir(exist_ok=True)
+    folder.chmod(0o755)
     faults, facts_of = [], {}
     for name in given.scenario or USUAL:
         program, is_stopped, more = scenarios(given.source)[name]
