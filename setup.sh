@@ -33,8 +33,8 @@ extra+=(cppcheck gcc-arm-none-eabi)
 # Draws the figures of axguard-lab chart.
 extra+=(gnuplot-nox)
 
-# LinuxCNC's interpreter, the judge of G-code.
-extra+=(linuxcnc-uspace)
+# LinuxCNC: its interpreter judges G-code, its planner moves the machine beside the guard.
+extra+=(linuxcnc-uspace linuxcnc-uspace-dev)
 
 # Builds the pages as a site, and spells them.
 extra+=(mkdocs codespell)

@@ -20,8 +20,12 @@
 extern "C" {
 #endif
 
-// Incremented when a struct or the meaning of a call changes; checked by axg_guard_create.
-#define AXG_INTERFACE_VERSION 2U
+// Incremented when a struct or the meaning of a call changes; checked by axg_guard_create. A
+// program compiled with version 2 works on: for it axg_guard_process writes axg_state up to
+// `samples_lost`.
+#define AXG_INTERFACE_VERSION 3U
+#define AXG_AXES_MAX 16U
+#define AXG_HASH_PARTS 4U
 #define AXG_NO_PAIR UINT32_MAX
 
 typedef enum axg_status {
@@ -106,6 +110,36 @@ typedef struct axg_options {
     uint8_t takes_local;  // 1: accept AXG_FRAME_LOCAL as the board's frames; 0: they stop the guard
 } axg_options;
 
+// One sample of all axes, in place of its frames: with can.format classical or fd alone.
+typedef struct axg_sample {
+    int64_t latched_us;  // instant of the positions, on the clock of now_us
+    uint64_t number;     // +1 a period, also for samples that were lost; SYNC counter: number % 240
+                         // + 1, lap: number / 240 % 65536
+    uint32_t axis_count;  // as in the machine file
+    uint32_t nonce;       // of the board's session, 24 bits
+    uint16_t tool;
+    uint8_t mode, flags;            // docs/reference/board.md, "Samples and the flags byte"
+    uint8_t reserved[4];            // 0
+    double position[AXG_AXES_MAX];  // mm or degrees, in the order of the machine file
+} axg_sample;
+
+// What the guard found for the newest sample that it evaluated.
+typedef struct axg_proof {
+    uint64_t samples_evaluated;  // 0: none yet, and nothing else is set
+    const char*
+        reason;  // none: proven; else why not: contact, predicted, contained, left_limits ...
+    const char* withheld;  // why that sample has no permit: nothing, not proven, late, motion ...
+    uint32_t pair;         // not proven; or proven, with the worst clearance level; or AXG_NO_PAIR
+    uint8_t sync_counter;  // of the sample
+    uint8_t is_proven;
+    uint8_t samples;  // n: a permit for it is valid for so many samples; 0: not proven
+    uint8_t level;    // 0 clear, 1 warn, 2 slow, 3 stop
+    uint8_t cap;      // 1/250 of rapid; 250: none
+    uint8_t reserved[7];
+    double clearance_mm;  // proven lower bound of the distance of `pair`; -1: unknown
+    double needed_mm;     // the distance that `pair` has to keep in a stop; -1: no pair
+} axg_proof;
+
 // Texts are static; docs/reference/states.md, docs/reference/commands.md and
 // docs/reference/protocol.md define them.
 typedef struct axg_state {
@@ -123,7 +157,34 @@ typedef struct axg_state {
     uint64_t permits, stops;  // sent
     uint64_t late;            // results after the deadline of the machine file
     uint64_t samples_lost;
+    axg_proof proof;  // since version 3
 } axg_state;
+
+// An axis as the machine file states it, in mm or degrees.
+typedef struct axg_axis {
+    char name[8];
+    uint8_t is_rotary, is_endless;
+    uint8_t reserved[6];
+    double min, max;  // travel; 0 of an endless axis
+    double speed, acceleration;
+    double jerk;      // 0: no limit is promised
+    double stopping;  // the least deceleration in a stop
+} axg_axis;
+
+// What a board has to know of the machine file; the names are those of axg_board_options.
+typedef struct axg_terms {
+    uint32_t period_us, jitter_us, reaction_us;
+    uint32_t permit_id, stop_id;
+    uint32_t hashes_in_id, hashes_out_id;  // 0: hashes are not compared
+    uint32_t hashes[AXG_HASH_PARTS];
+    uint32_t axis_count;
+    uint16_t first_tool;
+    uint8_t permit_version, permit_samples_max;
+    uint8_t takes_samples;   // 1: axg_guard_put_sample works with this format
+    uint8_t is_independent;  // 1: each axis stops by itself (guard.promise)
+    uint8_t reserved[2];
+    axg_axis axes[AXG_AXES_MAX];
+} axg_terms;
 
 typedef struct axg_guard axg_guard;
 
@@ -139,6 +200,13 @@ AXG_API axg_status axg_guard_start(axg_guard* guard, int64_t now_us);
 // Queues a frame of the bus, in order of arrival, including the guard's own with AXG_FRAME_OWN, for
 // the next axg_guard_process. Capacity: 256 frames.
 AXG_API axg_status axg_guard_receive(axg_guard* guard, const axg_frame* frame);
+
+// Queues a sample as the frames that a board would send: SYNC, positions, heartbeat, session. All
+// receiver rules apply, and positions are rounded to the counts of the format. Call it in the order
+// of the samples; its frames count against the capacity.
+// @param now_us  time of arrival
+// @return  AXG_STATUS_BAD_CALL: another format or number of axes, or a position that does not fit
+AXG_API axg_status axg_guard_put_sample(axg_guard* guard, const axg_sample* sample, int64_t now_us);
 
 // Does all work due at now_us except geometry; takes microseconds. now_us must not decrease. A
 // result of axg_guard_evaluate counts as received at the start of the next axg_guard_process.
@@ -160,6 +228,9 @@ AXG_API axg_status axg_guard_notify(axg_guard* guard, int32_t event, int64_t now
 
 // Returns "cutter - c", valid until axg_guard_destroy; "" for AXG_NO_PAIR and invalid pairs.
 AXG_API const char* axg_guard_pair_name(const axg_guard* guard, uint32_t pair);
+
+// Returns what the machine file states for a board; also before the start.
+AXG_API axg_status axg_guard_terms(const axg_guard* guard, axg_terms* out);
 
 AXG_API void axg_guard_destroy(axg_guard* guard);  // null is allowed
 

@@ -15,6 +15,8 @@
 #include <vector>
 
 #include "config/machine/effective_text.hpp"
+#include "firmware_if/c_interface/board_terms.hpp"
+#include "firmware_if/c_interface/sample_frames.hpp"
 #include "firmware_if/guard/guard_node.hpp"
 #include "firmware_if/guard/host_wire.hpp"
 #include "firmware_if/guard/live_engine.hpp"
@@ -26,6 +28,7 @@
 
 static_assert(sizeof(axg_latch) == sizeof(axg::LatchCell) &&
               offsetof(axg_latch, inverse) == offsetof(axg::LatchCell, inverse));
+static_assert(AXG_AXES_MAX == axg::kAxesMax && AXG_HASH_PARTS == axg::kHashParts);
 
 /// Members in the order in which they are made: each needs those above it.
 struct axg_guard {
@@ -48,6 +51,10 @@ struct axg_guard {
     const char* refused = "";
     const char* bus_fault = "";
     std::atomic<bool> has_query{false};
+    axg::SampleFrames samples;
+    std::uint32_t version;  // of the header that the host was compiled with
+    axg::LiveResult last;   // the newest of a sample
+    std::uint64_t evaluated = 0;
     axg::HostWire wire;
     axg::LiveQueues queues;
     axg::SpscQueue<axg::LiveResult, 64> undated;  // not dated yet
@@ -189,6 +196,40 @@ axg_phase phase_of(GuardPhase phase) noexcept {
     }
 }
 
+/// The version before this one had no proof in its state.
+constexpr std::uint32_t kVersionWithoutProof = 2;
+
+std::size_t state_bytes(const axg_guard& guard) noexcept {
+    return guard.version == kVersionWithoutProof ? offsetof(axg_state, proof) : sizeof(axg_state);
+}
+
+axg_proof proof_of(const axg_guard& guard) noexcept {
+    const axg::CycleResult& result = guard.last.result;
+    const axg::GuardNode& live = *guard.guard;
+    axg_proof proof{};
+    proof.samples_evaluated = guard.evaluated;
+    proof.reason = axg::to_text(result.reason);
+    proof.withheld = axg::to_text(live.withheld().why);
+    proof.pair = AXG_NO_PAIR;
+    proof.cap = axg::kPermitCapNone;
+    proof.clearance_mm = proof.needed_mm = -1;
+    if (guard.evaluated == 0) {
+        return proof;
+    }
+    const axg::Permit2 permit = axg::permit2_of(result, 0, guard.last.sync_counter);
+    proof.sync_counter = permit.sync_counter;
+    proof.is_proven = result.has_permit ? 1 : 0;
+    proof.samples = permit.samples;
+    proof.level = permit.level;
+    proof.cap = permit.cap;
+    proof.pair = result.has_permit ? result.advisories.pair : result.pair;
+    if (proof.pair < guard.loaded.machine.pairs.size()) {
+        proof.needed_mm = guard.loaded.machine.pairs[proof.pair].margin_mm;
+        proof.clearance_mm = result.has_permit ? result.advisories.distance_mm : -1;
+    }
+    return proof;
+}
+
 axg_state state_of(const axg_guard& guard) noexcept {
     const axg::GuardNode& live = *guard.guard;
     axg_state state{};
@@ -208,13 +249,17 @@ axg_state state_of(const axg_guard& guard) noexcept {
     state.stops = live.counters().stops;
     state.late = live.counters().late;
     state.samples_lost = live.receiver().counters().samples_lost;
+    state.proof = proof_of(guard);
     return state;
 }
 
 }  // namespace
 
 axg_guard::axg_guard(axg::LoadedMachine&& machine, const axg_options& wanted)
-    : loaded(std::move(machine)), parts(loaded, wanted.mode == AXG_MODE_STOPPABLE) {
+    : loaded(std::move(machine)),
+      parts(loaded, wanted.mode == AXG_MODE_STOPPABLE),
+      samples(loaded.machine),
+      version(wanted.version) {
     if (!has_all()) {
         words = parts.fault();
         return;
@@ -250,7 +295,7 @@ axg_status axg_guard_create(const axg_options* options, axg_guard** out, char* t
     if (options == nullptr || out == nullptr) {
         return AXG_STATUS_BAD_CALL;
     }
-    if (options->version != AXG_INTERFACE_VERSION) {
+    if (options->version != AXG_INTERFACE_VERSION && options->version != kVersionWithoutProof) {
         return AXG_STATUS_BAD_VERSION;
     }
     if (!is_sound(*options)) {
@@ -301,6 +346,21 @@ axg_status axg_guard_receive(axg_guard* guard, const axg_frame* frame) {
     return guard->wire.arrive(arrival) ? AXG_STATUS_OK : AXG_STATUS_QUEUE_FULL;
 }
 
+axg_status axg_guard_put_sample(axg_guard* guard, const axg_sample* sample, int64_t now_us) {
+    if (guard == nullptr || !guard->guard || sample == nullptr) {
+        return AXG_STATUS_BAD_CALL;
+    }
+    const std::span<const axg::CanFrame> frames = guard->samples.encode(*sample, now_us);
+    if (frames.empty()) {
+        return AXG_STATUS_BAD_CALL;
+    }
+    bool is_queued = true;
+    for (const axg::CanFrame& frame : frames) {
+        is_queued = guard->wire.arrive({.frame = frame}) && is_queued;
+    }
+    return is_queued ? AXG_STATUS_OK : AXG_STATUS_QUEUE_FULL;
+}
+
 axg_status axg_guard_process(axg_guard* guard, int64_t now_us, axg_state* out) {
     if (guard == nullptr || !guard->guard || out == nullptr) {
         return AXG_STATUS_BAD_CALL;
@@ -308,6 +368,10 @@ axg_status axg_guard_process(axg_guard* guard, int64_t now_us, axg_state* out) {
     axg::LiveResult live_result;
     while (guard->undated.pop(live_result)) {
         live_result.done_us = now_us;
+        if (live_result.kind == axg::LiveQuery::Kind::snapshot) {
+            guard->last = live_result;
+            ++guard->evaluated;
+        }
         // As many fit there as here, and what follows takes them all.
         [[maybe_unused]] const bool is_pushed = guard->queues.results.push(live_result);
     }
@@ -316,7 +380,8 @@ axg_status axg_guard_process(axg_guard* guard, int64_t now_us, axg_state* out) {
         guard->has_query.store(true);
     }
     take_notes(*guard);
-    *out = state_of(*guard);
+    const axg_state state = state_of(*guard);
+    std::memcpy(out, &state, state_bytes(*guard));
     return AXG_STATUS_OK;
 }
 
@@ -376,6 +441,14 @@ axg_status axg_guard_notify(axg_guard* guard, int32_t event, int64_t now_us) {
 
 const char* axg_guard_pair_name(const axg_guard* guard, uint32_t pair) {
     return guard == nullptr || pair >= guard->pairs.size() ? "" : guard->pairs[pair].c_str();
+}
+
+axg_status axg_guard_terms(const axg_guard* guard, axg_terms* out) {
+    if (guard == nullptr || out == nullptr) {
+        return AXG_STATUS_BAD_CALL;
+    }
+    *out = axg::board_terms(guard->loaded.machine, guard->options.hashes);
+    return AXG_STATUS_OK;
 }
 
 void axg_guard_destroy(axg_guard* guard) {

@@ -8,6 +8,9 @@ import sys
 from sources import is_code, finish, read_text, tracked_files
 
 LICENCE = "SPDX-License-Identifier: Apache-2.0"
+# What links LinuxCNC's HAL is a program of its own under HAL's licence.
+HAL = re.compile(r"firmware_if/linuxcnc/axguard_\w+\.[ch]$")
+HAL_LICENCE = "SPDX-License-Identifier: GPL-2.0-or-later"
 LINE_COLUMNS_MAX = 100
 FILE_LINES_MAX = 600
 NAME = re.compile(r"[a-z0-9_]+(-[a-z0-9_]+)*(\.[a-z0-9_]+)*$")
@@ -22,8 +25,9 @@ def faults_in(name, text):
     lines = text.split("\n")
     if is_code(name):
         head = lines[:3] if lines[0].startswith("#") else lines[:1]
-        if not any(LICENCE in line for line in head):
-            yield f"{name}:1: wanted '{LICENCE}' as the first line (after #!)"
+        licence = HAL_LICENCE if HAL.match(name) else LICENCE
+        if not any(licence in line for line in head):
+            yield f"{name}:1: wanted '{licence}' as the first line (after #!)"
         if len(lines) > FILE_LINES_MAX:
             yield f"{name}: {len(lines)} lines, wanted at most {FILE_LINES_MAX}: one idea a file"
         for number, line in enumerate(lines, 1):

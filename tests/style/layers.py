@@ -26,6 +26,9 @@ ROOM_FILES_MAX = 40
 # no header that a room could include.
 NO_ROOMS = {"config/machines", "config/machines/generator", "config/machines/meshes",
             "config/schema", "firmware_if/c_interface", "firmware_if/c_interface/example",
+            "firmware_if/linuxcnc", "firmware_if/linuxcnc/examples/paper-trunnion",
+            "firmware_if/linuxcnc/examples/xyzac-trt",
+            "firmware_if/linuxcnc/examples/xyzbc-trt",
             "hil_replay/programs"}
 # The one header outside of rooms, and who may include from the folders that are none.
 C_HEADER = "firmware_if/axguard.h"

@@ -49,6 +49,26 @@ TEST_F(NoAllocation, BetweenStartAndDestroyOfTheCInterface) {
     expect_none(options, frames);
 }
 
+TEST_F(NoAllocation, ForSamplesInPlaceOfFrames) {
+    test::CHost host(test::c_options(AXG_MODE_STOPPABLE));
+    ASSERT_NE(host.guard, nullptr);
+    axg_terms terms{};
+    const std::uint64_t before = allocations;
+    ASSERT_EQ(axg_guard_start(host.guard, 0), AXG_STATUS_OK);
+    axg_sample sample{};
+    sample.axis_count = 5;
+    for (sample.number = 1; sample.number <= 600; ++sample.number) {
+        sample.latched_us = static_cast<std::int64_t>(sample.number) * 1000;
+        EXPECT_EQ(axg_guard_put_sample(host.guard, &sample, sample.latched_us), AXG_STATUS_OK);
+        host.cycle(sample.latched_us);
+    }
+    (void)axg_guard_terms(host.guard, &terms);
+    const std::uint64_t spent = allocations - before;
+    EXPECT_EQ(spent, 0U);
+    EXPECT_TRUE(host.ok);
+    EXPECT_GT(host.state.proof.samples_evaluated, 500U);
+}
+
 TEST_F(NoAllocation, IsCounted) {
     const std::uint64_t before = allocations;
     int* volatile number = new int(1);  // volatile: the compiler may otherwise leave both out

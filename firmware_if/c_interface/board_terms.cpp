@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/c_interface/board_terms.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "firmware_if/c_interface/sample_frames.hpp"
+
+namespace axg {
+namespace {
+
+constexpr double kDegPerRad = 0x1.ca5dc1a63c1f8p+5;
+constexpr double kUsPerS = 1e6;
+
+std::uint32_t microseconds(double seconds) noexcept {
+    return static_cast<std::uint32_t>(std::lround(seconds * kUsPerS));
+}
+
+axg_axis axis_of(const Axis& axis) noexcept {
+    axg_axis out{};
+    axis.name.copy(out.name, sizeof out.name - 1);
+    out.is_rotary = axis.kind == AxisKind::rotary ? 1 : 0;
+    out.is_endless = axis.unlimited ? 1 : 0;
+    const double unit = out.is_rotary != 0 ? kDegPerRad : 1.0;
+    out.min = axis.min * unit;
+    out.max = axis.max * unit;
+    out.speed = axis.speed_max * unit;
+    out.acceleration = axis.acceleration_max * unit;
+    out.jerk = has_jerk_limit(axis) ? axis.jerk_max * unit : 0;
+    out.stopping = axis.stopping_min * unit;
+    return out;
+}
+
+}  // namespace
+
+axg_terms board_terms(const Machine& machine, const ConfigurationHashes& hashes) noexcept {
+    const CanLayout& can = machine.can;
+    axg_terms out{};
+    out.period_us = can.sample_us;
+    out.jitter_us = microseconds(machine.guard.latch_jitter_s);
+    out.reaction_us = microseconds(machine.guard.board_reaction_s);
+    out.permit_id = can.permit_id;
+    out.stop_id = can.stop_id;
+    out.hashes_in_id = can.hashes_in_id;
+    out.hashes_out_id = can.hashes_out_id;
+    std::copy(hashes.of.begin(), hashes.of.end(), out.hashes);
+    out.axis_count = static_cast<std::uint32_t>(machine.axes.size());
+    out.first_tool = machine.first_tool;
+    out.permit_version = can.permit_version;
+    out.permit_samples_max = can.permit_samples.most;
+    out.takes_samples = takes_samples(machine) ? 1 : 0;
+    out.is_independent = machine.guard.promise == StopPromise::independent ? 1 : 0;
+    std::transform(machine.axes.begin(), machine.axes.end(), out.axes, axis_of);
+    return out;
+}
+
+}  // namespace axg

@@ -1,0 +1,402 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// HAL component, userspace: takes the sample of every servo period from axguard_stop, hands it to
+// the guard (libaxguard) in this process, and hands the guard's frames back. Killed, it takes every
+// later permit with it: the realtime component counts the last one down by itself.
+// Usage: loadusr -W axguard-hal MACHINE.yaml [--mesh-root DIR] [--contact] [--simulation]
+#include <axguard.h>
+#include <hal.h>
+#include <inttypes.h>
+#include <rtapi.h>
+#include <signal.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+#include "firmware_if/linuxcnc/axguard_wire.h"
+
+#define IDLE_NS 50000   // between two looks at an empty stream
+#define ARM_US 5000000  // so long a person's arming waits for the guard to be ready
+#define TEXT_BYTES 8192
+
+typedef struct hal_pins {
+    hal_s32_t* phase;
+    hal_u32_t *level, *samples, *cap, *pair;
+    hal_u32_t *permits, *stops, *late, *samples_lost;
+    hal_float_t* clearance;
+    hal_bit_t *armed, *proven;
+} hal_pins;
+
+typedef struct host {
+    int comp_id;
+    hal_pins* pins;
+    hal_stream_t samples, frames;
+    axg_guard* guard;
+    axg_terms terms;
+    axg_state state;
+    axg_phase phase_said;
+    bool has_said;
+    int64_t sample_us;   // the machine's time: of the newest sample
+    int64_t arrived_ns;  // the host's time when it came
+    int64_t now_us;
+    uint32_t arms;
+    bool has_arms, wants_reset;
+    bool is_simulation;  // no time passes between two samples: the servo thread waits for the guard
+    int64_t arm_until_us;  // 0: nobody arms
+} host;
+
+static volatile sig_atomic_t ends;
+
+static void end(int signal_number) {
+    (void)signal_number;
+    ends = 1;
+}
+
+static int64_t host_ns(void) {
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (int64_t)time.tv_sec * 1000000000 + time.tv_nsec;
+}
+
+// The clock of the guard is that of the servo thread: between two samples it goes on with the host,
+// and never beyond the next sample.
+static int64_t now_us(host* host) {
+    const int64_t since_us = (host_ns() - host->arrived_ns) / 1000;
+    const int64_t most_us = host->is_simulation ? 0 : (int64_t)host->terms.period_us - 1;
+    const int64_t now = host->sample_us + (since_us < most_us ? since_us : most_us);
+    host->now_us = now > host->now_us ? now : host->now_us;
+    return host->now_us;
+}
+
+// --- To the realtime component ----------------------------------------------------------------
+
+static bool send(host* host, uint32_t kind, uint32_t length, uint32_t id, const uint8_t data[8],
+                 double value) {
+    union hal_stream_data message[HAL_STREAM_MAX_PINS];
+    memset(message, 0, sizeof message);
+    message[0].u = kind | length << 8 | id << 16;
+    memcpy(&message[1].u, data, 4);
+    memcpy(&message[2].u, data + 4, 4);
+    message[3].f = value;
+    return hal_stream_write(&host->frames, message) == 0;
+}
+
+static void send_done(host* host, uint64_t number) {
+    uint8_t data[8];
+    memcpy(data, &number, sizeof data);
+    const bool is_ready =
+        host->state.phase == AXG_PHASE_READY || host->state.phase == AXG_PHASE_ARMED;
+    send(host, AXG_WIRE_DONE, is_ready ? 1 : 0, 0, data, 0);
+}
+
+static bool send_options(host* host) {
+    const axg_terms* const terms = &host->terms;
+    const uint8_t none[8] = {0};
+    double option[AXG_WIRE_OPTIONS];
+    memset(option, 0, sizeof option);
+    option[AXG_WIRE_PERIOD_US] = terms->period_us;
+    option[AXG_WIRE_JITTER_US] = terms->jitter_us;
+    option[AXG_WIRE_REACTION_US] = terms->reaction_us;
+    option[AXG_WIRE_SAMPLES_MAX] = terms->permit_samples_max;
+    option[AXG_WIRE_AXES] = terms->axis_count;
+    option[AXG_WIRE_PERMIT_ID] = terms->permit_id;
+    option[AXG_WIRE_STOP_ID] = terms->stop_id;
+    option[AXG_WIRE_HASHES_ID] = terms->hashes_out_id;
+    option[AXG_WIRE_HASHES_IN_ID] = terms->hashes_in_id;
+    option[AXG_WIRE_TOOL] = terms->first_tool;
+    for (uint32_t i = 0; i < AXG_HASH_PARTS; ++i) {
+        option[AXG_WIRE_HASH + i] = terms->hashes[i];
+    }
+    for (uint32_t i = 0; i < terms->axis_count; ++i) {
+        option[AXG_WIRE_STOPPING + i] = terms->axes[i].stopping;
+    }
+    bool is_sent = true;
+    for (uint32_t i = 0; i < AXG_WIRE_OPTIONS; ++i) {
+        is_sent = is_sent && send(host, AXG_WIRE_OPTION, i, 0, none, option[i]);
+    }
+    return is_sent && send(host, AXG_WIRE_BEGIN, 0, 0, none, 0);
+}
+
+// --- The guard --------------------------------------------------------------------------------
+
+static const char* phase_name(axg_phase phase) {
+    static const char* const names[] = {"stopped", "init", "selftest", "ready", "armed"};
+    return names[phase];
+}
+
+static void say(host* host) {
+    const axg_state* const state = &host->state;
+    if (host->has_said && state->phase == host->phase_said) {
+        return;
+    }
+    host->has_said = true;
+    host->phase_said = state->phase;
+    fprintf(stderr, "axguard-hal: %" PRId64 " us: %s", host->now_us, phase_name(state->phase));
+    if (state->phase == AXG_PHASE_STOPPED) {
+        fprintf(stderr, ": cause %s, reason %s, pair \"%s\", input %s, bus %s", state->cause,
+                state->reason, axg_guard_pair_name(host->guard, state->pair), state->input_fault,
+                state->bus_fault);
+    }
+    fprintf(stderr, "\n");
+}
+
+static void show(host* host) {
+    const axg_state* const state = &host->state;
+    hal_pins* const pins = host->pins;
+    *pins->phase = (int32_t)state->phase;
+    *pins->armed = state->phase == AXG_PHASE_ARMED;
+    *pins->proven = state->proof.is_proven != 0;
+    *pins->level = state->proof.level;
+    *pins->samples = state->proof.samples;
+    *pins->cap = state->proof.cap;
+    *pins->pair = state->proof.pair;
+    *pins->clearance = state->proof.clearance_mm;
+    *pins->permits = (uint32_t)state->permits;
+    *pins->stops = (uint32_t)state->stops;
+    *pins->late = (uint32_t)state->late;
+    *pins->samples_lost = (uint32_t)state->samples_lost;
+    say(host);
+}
+
+// A person's one act resets a stop, where there is one, and arms when the guard is ready.
+static void arm(host* host) {
+    if (host->arm_until_us == 0) {
+        return;
+    }
+    if (host->state.phase == AXG_PHASE_STOPPED && host->wants_reset) {
+        axg_guard_notify(host->guard, AXG_EVENT_RESET, now_us(host));
+    } else if (host->state.phase == AXG_PHASE_READY) {
+        axg_guard_notify(host->guard, AXG_EVENT_ARM, now_us(host));
+    } else {
+        host->wants_reset = host->wants_reset && host->state.phase == AXG_PHASE_STOPPED;
+    }
+    if (host->state.phase == AXG_PHASE_ARMED || host->now_us >= host->arm_until_us) {
+        if (host->state.phase != AXG_PHASE_ARMED) {
+            fprintf(stderr, "axguard-hal: not armed: %s\n", host->state.refused);
+        }
+        host->arm_until_us = 0;
+    }
+}
+
+// Everything that is due.
+static axg_status cycle(host* host) {
+    bool has_sent = true;
+    while (has_sent) {
+        axg_status status = axg_guard_process(host->guard, now_us(host), &host->state);
+        if (status == AXG_STATUS_OK && host->state.has_query) {
+            status = axg_guard_evaluate(host->guard);
+            if (status == AXG_STATUS_OK) {
+                status = axg_guard_process(host->guard, now_us(host), &host->state);
+            }
+        }
+        if (status != AXG_STATUS_OK) {
+            return status;
+        }
+        axg_frame frame;
+        for (has_sent = false; axg_guard_next_tx_frame(host->guard, &frame) == AXG_STATUS_OK;
+             has_sent = true) {
+            if (send(host, AXG_WIRE_FRAME, frame.length_bytes, frame.id, frame.data, 0)) {
+                frame.flags |= AXG_FRAME_OWN;  // one that did not get through stops the guard
+                axg_guard_receive(host->guard, &frame);
+            }
+        }
+    }
+    arm(host);
+    return AXG_STATUS_OK;
+}
+
+static void take_hash(host* host, const union hal_stream_data record[]) {
+    if (record[5].u == 0) {
+        return;
+    }
+    axg_frame frame;
+    memset(&frame, 0, sizeof frame);
+    frame.time_us = host->now_us;
+    frame.id = host->terms.hashes_in_id;
+    frame.length_bytes = 8;
+    memcpy(frame.data, &record[6].u, 4);
+    memcpy(frame.data + 4, &record[7].u, 4);
+    axg_guard_receive(host->guard, &frame);
+}
+
+static uint64_t number_of(const union hal_stream_data record[]) {
+    return record[0].u | (uint64_t)record[1].u << 32;
+}
+
+static void take_sample(host* host, const union hal_stream_data record[]) {
+    axg_sample sample;
+    memset(&sample, 0, sizeof sample);
+    sample.number = number_of(record);
+    sample.latched_us = (int64_t)(sample.number * host->terms.period_us);
+    sample.axis_count = host->terms.axis_count;
+    sample.nonce = record[2].u;
+    sample.mode = (uint8_t)(record[3].u & 0xFFU);
+    sample.flags = (uint8_t)(record[3].u >> 8 & 0xFFU);
+    sample.tool = (uint16_t)(record[3].u >> 16);
+    for (uint32_t i = 0; i < sample.axis_count; ++i) {
+        sample.position[i] = record[AXG_WIRE_SAMPLE_WORDS + i].f;
+    }
+    host->sample_us = sample.latched_us;
+    host->arrived_ns = host_ns();
+    if (axg_guard_put_sample(host->guard, &sample, now_us(host)) != AXG_STATUS_OK) {
+        axg_guard_notify(host->guard, AXG_EVENT_FRAMES_LOST, host->now_us);
+    }
+    take_hash(host, record);
+    if (host->has_arms && record[4].u != host->arms) {
+        host->arm_until_us = host->now_us + ARM_US;
+        host->wants_reset = true;
+    }
+    host->arms = record[4].u;
+    host->has_arms = true;
+}
+
+// --- Start and end ----------------------------------------------------------------------------
+
+static bool make_guard(host* host, int count, char** words) {
+    static char text[TEXT_BYTES];
+    axg_options options;
+    memset(&options, 0, sizeof options);
+    options.version = AXG_INTERFACE_VERSION;
+    options.engine = AXG_ENGINE_OF_MACHINE_FILE;
+    options.mode = AXG_MODE_STOPPABLE;
+    for (int i = 1; i < count; ++i) {
+        if (strcmp(words[i], "--mesh-root") == 0 && i + 1 < count) {
+            options.mesh_root = words[++i];
+        } else if (strcmp(words[i], "--contact") == 0) {
+            options.mode = AXG_MODE_CONTACT;
+        } else if (strcmp(words[i], "--simulation") == 0) {
+            host->is_simulation = true;
+        } else if (words[i][0] != '-' && options.machine_file == NULL) {
+            options.machine_file = words[i];
+        } else {
+            fprintf(stderr, "axguard-hal: unknown argument: %s\n", words[i]);
+            return false;
+        }
+    }
+    if (options.machine_file == NULL) {
+        fprintf(stderr,
+                "usage: axguard-hal MACHINE.yaml [--mesh-root DIR] [--contact] "
+                "[--simulation]\n");
+        return false;
+    }
+    const axg_status status = axg_guard_create(&options, &host->guard, text, sizeof text);
+    if (text[0] != '\0' || status != AXG_STATUS_OK) {
+        fprintf(stderr, "axguard-hal: %s\n%s\n", axg_status_text(status), text);
+    }
+    if (status != AXG_STATUS_OK || axg_guard_terms(host->guard, &host->terms) != AXG_STATUS_OK) {
+        return false;
+    }
+    const axg_terms* const terms = &host->terms;
+    if (terms->takes_samples == 0 || terms->is_independent == 0 || terms->permit_version != 2 ||
+        terms->axis_count > AXG_WIRE_JOINTS_MAX) {
+        fprintf(stderr,
+                "axguard-hal: %s: needs can.format classical or fd, no can.ahead, can.permit 2, "
+                "guard.stop_promise independent, and at most %d axes.\n",
+                options.machine_file, AXG_WIRE_JOINTS_MAX);
+        return false;
+    }
+    return true;
+}
+
+#define NEW_PIN(type, where, name) \
+    (fault = fault ? fault : hal_pin_##type##_newf(HAL_OUT, where, host->comp_id, "axguard." name))
+
+static int make_pins(host* host) {
+    host->pins = hal_malloc(sizeof *host->pins);
+    if (host->pins == NULL) {
+        return -1;
+    }
+    int fault = 0;
+    NEW_PIN(s32, &host->pins->phase, "phase");
+    NEW_PIN(bit, &host->pins->armed, "armed");
+    NEW_PIN(bit, &host->pins->proven, "proven");
+    NEW_PIN(float, &host->pins->clearance, "clearance-mm");
+    NEW_PIN(u32, &host->pins->pair, "pair");
+    NEW_PIN(u32, &host->pins->level, "level");
+    NEW_PIN(u32, &host->pins->samples, "permit-samples");
+    NEW_PIN(u32, &host->pins->cap, "cap");
+    NEW_PIN(u32, &host->pins->permits, "permits");
+    NEW_PIN(u32, &host->pins->stops, "stops");
+    NEW_PIN(u32, &host->pins->late, "late");
+    NEW_PIN(u32, &host->pins->samples_lost, "samples-lost");
+    return fault;
+}
+
+static int attach(host* host) {
+    host->comp_id = hal_init("axguard-hal");
+    if (host->comp_id < 0) {
+        return host->comp_id;
+    }
+    int fault = make_pins(host);
+    fault = fault ? fault
+                  : hal_stream_attach(&host->samples, host->comp_id, AXG_WIRE_SAMPLES_KEY,
+                                      AXG_WIRE_SAMPLE_TYPES);
+    fault = fault ? fault
+                  : hal_stream_attach(&host->frames, host->comp_id, AXG_WIRE_FRAMES_KEY,
+                                      AXG_WIRE_FRAME_TYPES);
+    if (fault != 0) {
+        fprintf(stderr, "axguard-hal: no streams (error %d): loadrt axguard_stop first\n", fault);
+    }
+    return fault;
+}
+
+static axg_status run(host* host) {
+    union hal_stream_data record[HAL_STREAM_MAX_PINS];
+    unsigned unused = 0;
+    axg_status status = AXG_STATUS_OK;
+    bool has_started = false;
+    const struct timespec idle = {0, IDLE_NS};
+    while (!ends && status == AXG_STATUS_OK) {
+        uint64_t newest = 0;
+        while (hal_stream_readable(&host->samples) &&
+               hal_stream_read(&host->samples, record, &unused) == 0) {
+            newest = number_of(record);
+            if (has_started) {
+                take_sample(host, record);
+            }
+        }
+        if (!has_started && newest != 0) {  // those before belong to nobody
+            host->now_us = host->sample_us = (int64_t)(newest * host->terms.period_us);
+            host->arrived_ns = host_ns();
+            status = axg_guard_start(host->guard, host->now_us);
+            has_started = send_options(host);
+        } else if (has_started && (newest != 0 || now_us(host) >= host->state.next_due_us)) {
+            status = cycle(host);
+            show(host);
+        }
+        if (newest != 0) {
+            send_done(host, newest);
+        } else {
+            nanosleep(&idle, NULL);
+        }
+    }
+    return status;
+}
+
+int main(int count, char** words) {
+    static host host;
+    struct sigaction action;
+    memset(&action, 0, sizeof action);
+    action.sa_handler = end;
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+    if (!make_guard(&host, count, words)) {
+        return 1;
+    }
+    int result = 1;
+    if (attach(&host) == 0) {
+        hal_ready(host.comp_id);
+        const axg_status status = run(&host);
+        if (status != AXG_STATUS_OK) {
+            fprintf(stderr, "axguard-hal: %s\n", axg_status_text(status));
+        }
+        result = status == AXG_STATUS_OK ? 0 : 1;
+        hal_stream_detach(&host.samples);
+        hal_stream_detach(&host.frames);
+    }
+    if (host.comp_id > 0) {
+        hal_exit(host.comp_id);
+    }
+    axg_guard_destroy(host.guard);
+    return result;
+}

@@ -1,0 +1,513 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// HAL component, realtime: stands between joint.N.motor-pos-cmd and the drives. While the board
+// library says that the axes may move, each joint's command passes. When the permit has ended, each
+// joint is brought to rest by its own ramp, whoever else is alive or dead, and the E-stop chain is
+// opened. Time is counted in servo periods, so that nothing but this function moves the end.
+// Pins and promises: docs/reference/linuxcnc.md.
+#include <hal.h>
+#include <math.h>
+#include <rtapi.h>
+#include <rtapi_app.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <string.h>
+#include <time.h>
+
+#include "firmware_if/board/axguard_board.h"
+#include "firmware_if/linuxcnc/axguard_wire.h"
+
+MODULE_AUTHOR("axguard");
+MODULE_DESCRIPTION("Stops each joint by its own ramp when the permit of the guard has ended");
+MODULE_LICENSE("GPL");
+
+static int joints = 3;
+RTAPI_MP_INT(joints, "number of joints, as the axes of the machine file");
+
+#define STILL_PERIODS 20  // a hold shorter than this is reported as motion
+#define STILL_STEP 1e-8   // mm or degrees a period: what kinematics may add to a position
+#define ALIGNED 1e-4      // mm or degrees: LinuxCNC commands the place where the joint is
+#define MESSAGES_A_PERIOD 64
+#define ARM_PERIODS 5000U  // so long a person's arming waits for rest and for the guard
+#define WAIT_STEP_NS 20000
+
+typedef struct stop_pins {
+    hal_float_t* in[AXG_WIRE_JOINTS_MAX];        // joint.N.motor-pos-cmd
+    hal_float_t* offset[AXG_WIRE_JOINTS_MAX];    // joint.N.motor-offset
+    hal_float_t* out[AXG_WIRE_JOINTS_MAX];       // to the drive
+    hal_float_t* position[AXG_WIRE_JOINTS_MAX];  // of the joint, as the guard gets it
+    hal_bit_t* homed[AXG_WIRE_JOINTS_MAX];
+    hal_bit_t* enable_in[AXG_WIRE_JOINTS_MAX];   // joint.N.amp-enable-out
+    hal_bit_t* enable_out[AXG_WIRE_JOINTS_MAX];  // stays on until the ramp has ended
+    hal_bit_t *arm, *permit_ok, *feed_inhibit, *estop_ok, *stopping, *spindle_on, *home_unguarded;
+    hal_float_t* adaptive_feed;
+    hal_bit_t *tool_change, *tool_changed, *tool_change_out, *tool_changed_in;
+    hal_s32_t* tool_number;
+    hal_u32_t *number, *cause, *refusal, *permits, *left, *simulation_wait_us, *unheard, *last_stop,
+        *late;
+} stop_pins;
+
+typedef enum tool_step { TOOL_NONE, TOOL_WANTED, TOOL_OUT, TOOL_PERMIT, TOOL_DONE } tool_step;
+
+typedef struct stop_state {
+    axg_board board;
+    double option[AXG_WIRE_OPTIONS];
+    uint32_t options_seen[AXG_WIRE_OPTIONS];
+    bool has_begun;
+    uint64_t count;                     // servo periods: the number of the sample
+    uint64_t period_us;                 // as the thread runs
+    double at[AXG_WIRE_JOINTS_MAX];     // where the motor was sent: joint and motor offset
+    double speed[AXG_WIRE_JOINTS_MAX];  // per second
+    bool has_at;
+    bool is_synchronous;  // what is commanded passes without a jump
+    bool is_ramping, is_latched;
+    uint32_t still;
+    bool arm_before;
+    uint32_t arms, arm_left, nonce;
+    bool guard_is_ready;  // it sends no stop frame any more: a board armed before would stop again
+    uint8_t hashes_wanted;
+    tool_step tool_step;
+    uint16_t tool;
+    uint64_t done;  // sample that was answered last
+    bool waits;     // simulation-wait-us: somebody answers
+    uint32_t ramp_periods;
+    int64_t clock_ns;  // of the host, when this period began
+} stop_state;
+
+static int comp_id;
+static stop_pins* pins;
+static stop_state state;
+static hal_stream_t samples_out, frames_in;
+
+static uint64_t now_us(void) {
+    return state.count * state.period_us;
+}
+
+// --- What comes from the guard ----------------------------------------------------------------
+
+static void begin(void) {
+    bool is_complete = true;
+    for (int i = 0; i < AXG_WIRE_OPTIONS; ++i) {
+        is_complete = is_complete && state.options_seen[i] != 0;
+        state.options_seen[i] = 0;
+    }
+    axg_board_options options;
+    memset(&options, 0, sizeof options);
+    options.period_us = (uint32_t)state.option[AXG_WIRE_PERIOD_US];
+    options.jitter_us = (uint32_t)state.option[AXG_WIRE_JITTER_US];
+    options.reaction_us = (uint32_t)state.option[AXG_WIRE_REACTION_US];
+    options.permit_samples_max = (uint8_t)state.option[AXG_WIRE_SAMPLES_MAX];
+    options.axis_count = (uint8_t)state.option[AXG_WIRE_AXES];
+    options.permit_id = (uint32_t)state.option[AXG_WIRE_PERMIT_ID];
+    options.stop_id = (uint32_t)state.option[AXG_WIRE_STOP_ID];
+    options.hashes_id = (uint32_t)state.option[AXG_WIRE_HASHES_ID];
+    options.cap_kind = AXG_BOARD_CAP_IGNORED;
+    for (int i = 0; i < 4; ++i) {
+        options.hashes[i] = (uint32_t)state.option[AXG_WIRE_HASH + i];
+    }
+    bool brakes = true;
+    for (int i = 0; i < joints; ++i) {
+        brakes = brakes && state.option[AXG_WIRE_STOPPING + i] > 0;
+    }
+    const bool is_ours = options.period_us == state.period_us && options.axis_count == joints;
+    state.nonce = (uint32_t)((uint64_t)rtapi_get_time() >> 4) & AXG_BOARD_NONCE_MAX;
+    const bool is_up = axg_board_power_up(&state.board, &options, state.nonce, now_us());
+    axg_board_moves(&state.board, state.still < STILL_PERIODS, now_us());
+    state.has_begun = is_complete && brakes && is_ours && is_up;
+    state.tool = (uint16_t)state.option[AXG_WIRE_TOOL];
+    state.tool_step = TOOL_NONE;
+    state.hashes_wanted = 0;
+    state.arm_left = 0;
+    state.guard_is_ready = false;
+    if (!state.has_begun) {
+        rtapi_print_msg(RTAPI_MSG_ERR,
+                        "axguard-stop: the machine file has %u axes and a period of %u us (found "
+                        "%d joints, %u us). Make them equal.\n",
+                        options.axis_count, options.period_us, joints, (unsigned)state.period_us);
+    }
+}
+
+static void take_frame(uint32_t head, uint32_t low, uint32_t high) {
+    axg_board_can_frame frame;
+    memset(&frame, 0, sizeof frame);
+    frame.id = head >> 16;
+    frame.length = (uint8_t)((head >> 8) & 0xFFU);
+    for (int i = 0; i < 4; ++i) {
+        frame.data[i] = (uint8_t)(low >> (8 * i));
+        frame.data[4 + i] = (uint8_t)(high >> (8 * i));
+    }
+    const axg_board_heard heard = axg_board_frame(&state.board, &frame, now_us());
+    if (heard == AXG_BOARD_HEARD_HASH || heard == AXG_BOARD_HEARD_HASH_DIFFERS) {
+        state.hashes_wanted |= (uint8_t)(1U << frame.data[0]);
+    }
+}
+
+static void take_message(const union hal_stream_data* message) {
+    const uint32_t head = message[0].u;
+    const uint32_t index = (head >> 8) & 0xFFU;
+    switch (head & 0xFFU) {
+        case AXG_WIRE_FRAME:
+            if (state.has_begun) {
+                take_frame(head, message[1].u, message[2].u);
+            }
+            break;
+        case AXG_WIRE_OPTION:
+            if (index < AXG_WIRE_OPTIONS) {
+                state.option[index] = message[3].f;
+                state.options_seen[index] = 1;
+            }
+            break;
+        case AXG_WIRE_BEGIN:
+            begin();
+            break;
+        case AXG_WIRE_DONE:
+            state.done = message[1].u | (uint64_t)message[2].u << 32;
+            state.waits = true;
+            state.guard_is_ready = index != 0;
+            break;
+        default:
+            break;
+    }
+}
+
+static bool take_messages(void) {
+    union hal_stream_data message[HAL_STREAM_MAX_PINS];
+    unsigned number = 0;
+    int taken = 0;
+    while (taken < MESSAGES_A_PERIOD && hal_stream_readable(&frames_in) &&
+           hal_stream_read(&frames_in, message, &number) == 0) {
+        take_message(message);
+        ++taken;
+    }
+    return taken != 0;
+}
+
+// In a simulation no time passes while the guard computes: the servo thread of a host without real
+// time would run on without it. Never in a machine: the pin is 0 then, and nothing waits.
+static void wait_for_the_guard(void) {
+    const int64_t limit_ns = (int64_t)*pins->simulation_wait_us * 1000;
+    int64_t waited_ns = 0;
+    while (state.waits && state.count > 1 && state.done + 1 < state.count && waited_ns < limit_ns) {
+        if (!take_messages()) {
+            const struct timespec step = {0, WAIT_STEP_NS};
+            nanosleep(&step, NULL);
+            waited_ns += WAIT_STEP_NS;
+        }
+    }
+    if (limit_ns != 0 && waited_ns >= limit_ns) {
+        state.waits = false;  // nobody answers any more, until somebody does
+        ++*pins->unheard;
+    }
+}
+
+// --- Arming, and a tool change ----------------------------------------------------------------
+
+static void arm(void) {
+    const bool is_asked = *pins->arm && !state.arm_before;
+    state.arm_before = *pins->arm;
+    if (is_asked && state.has_begun) {
+        ++state.arms;
+        state.arm_left = ARM_PERIODS;
+    }
+    if (state.arm_left == 0) {
+        return;
+    }
+    --state.arm_left;
+    if (!state.guard_is_ready) {
+        return;
+    }
+    const uint32_t step = (uint32_t)(rtapi_get_time() & 0xFFFF) | 1U;
+    state.nonce = (state.nonce + step) & AXG_BOARD_NONCE_MAX;
+    if (axg_board_arm(&state.board, state.nonce, now_us()) == AXG_BOARD_ARMING_DONE) {
+        state.arm_left = 0;
+        state.is_latched = false;
+        state.tool_step = TOOL_NONE;
+    }
+}
+
+static void change_tool(bool may_move) {
+    if (!*pins->tool_change) {
+        if (state.tool_step != TOOL_NONE) {
+            axg_board_end_tool(&state.board);
+        }
+        state.tool_step = TOOL_NONE;
+    } else if (state.tool_step == TOOL_NONE && axg_board_announce_tool(&state.board)) {
+        state.tool_step = TOOL_WANTED;
+    } else if (state.tool_step == TOOL_WANTED &&
+               axg_board_may_change_tool(&state.board, now_us())) {
+        state.tool_step = TOOL_OUT;
+    } else if (state.tool_step == TOOL_OUT && *pins->tool_changed_in) {
+        axg_board_end_tool(&state.board);
+        state.tool = (uint16_t)*pins->tool_number;
+        axg_board_change(&state.board, false, now_us());
+        state.tool_step = TOOL_PERMIT;
+    } else if (state.tool_step == TOOL_PERMIT && may_move) {
+        state.tool_step = TOOL_DONE;  // the program goes on only when its first motion is permitted
+    }
+    *pins->tool_change_out = state.tool_step == TOOL_OUT;
+    *pins->tool_changed = state.tool_step == TOOL_DONE;
+}
+
+// --- Motion -----------------------------------------------------------------------------------
+
+// What LinuxCNC commands, and whether that is where the joints are.
+static bool read_commands(double wanted[]) {
+    bool is_aligned = true;
+    for (int i = 0; i < joints; ++i) {
+        wanted[i] = *pins->in[i];
+        if (!state.has_at) {
+            state.at[i] = wanted[i];
+        }
+        is_aligned = is_aligned && fabs(wanted[i] - state.at[i]) <= ALIGNED;
+    }
+    state.has_at = true;
+    return is_aligned;
+}
+
+static bool is_homed(void) {
+    bool all = true;
+    for (int i = 0; i < joints; ++i) {
+        all = all && *pins->homed[i];
+    }
+    return all;
+}
+
+// Each joint by itself, by the deceleration of the machine file: no joint waits for another one,
+// and none turns round.
+static bool ramp(double period_s) {
+    bool moves = false;
+    for (int i = 0; i < joints; ++i) {
+        const double less = state.option[AXG_WIRE_STOPPING + i] * period_s;
+        const double speed = fabs(state.speed[i]) - less;
+        state.speed[i] = speed > 0 ? copysign(speed, state.speed[i]) : 0;
+        state.at[i] += state.speed[i] * period_s;
+        moves = moves || state.speed[i] != 0;
+    }
+    return moves;
+}
+
+static bool pass(const double wanted[], double period_s) {
+    bool moves = false;
+    for (int i = 0; i < joints; ++i) {
+        const double step = wanted[i] - state.at[i];
+        state.speed[i] = step / period_s;
+        state.at[i] = wanted[i];
+        moves = moves || fabs(step) > STILL_STEP;
+    }
+    return moves;
+}
+
+static bool is_fast(void) {
+    bool is_moving = false;
+    for (int i = 0; i < joints; ++i) {
+        is_moving = is_moving || state.speed[i] != 0;
+    }
+    return is_moving;
+}
+
+static void hold(void) {
+    for (int i = 0; i < joints; ++i) {
+        state.speed[i] = 0;
+    }
+}
+
+// Where the joints go in this period. Without permission a joint in motion is brought to rest, and
+// one at rest stays; a command that leaves it then opens the E-stop chain.
+static void move(bool may_pass, const double wanted[], bool is_aligned, double period_s) {
+    bool moves = false;
+    if (may_pass && state.is_synchronous) {
+        moves = pass(wanted, period_s);
+    } else if (state.is_ramping || is_fast()) {
+        state.ramp_periods = state.is_ramping ? state.ramp_periods + 1 : 1;
+        state.is_ramping = moves = ramp(period_s);
+        state.is_latched = true;
+        state.is_synchronous = false;
+        *pins->last_stop = state.ramp_periods;
+    } else {
+        state.is_latched = state.is_latched || !is_aligned;
+        state.is_synchronous = is_aligned;
+    }
+    if (!moves) {
+        hold();
+    }
+    state.still = moves ? 0 : (state.still < STILL_PERIODS ? state.still + 1 : state.still);
+}
+
+// --- One servo period -------------------------------------------------------------------------
+
+static void send_sample(void) {
+    union hal_stream_data record[HAL_STREAM_MAX_PINS];
+    memset(record, 0, sizeof record);
+    axg_board_says says;
+    memset(&says, 0, sizeof says);
+    says.mode = state.still < STILL_PERIODS ? 1 : 0;
+    if (state.tool_step == TOOL_WANTED || state.tool_step == TOOL_OUT) {
+        says.mode = 2;
+    }
+    says.tool = state.tool;
+    says.is_homed = is_homed();
+    says.is_spindle_on = *pins->spindle_on;
+    const uint8_t flags = axg_board_flags(&state.board, &says);
+    record[0].u = (uint32_t)state.count;
+    record[1].u = (uint32_t)(state.count >> 32);
+    record[2].u = state.board.nonce;
+    record[3].u = says.mode | (uint32_t)flags << 8 | (uint32_t)says.tool << 16;
+    record[4].u = state.arms;
+    for (uint8_t part = 0; part < 4 && record[5].u == 0; ++part) {
+        axg_board_can_frame frame;
+        const uint32_t id = (uint32_t)state.option[AXG_WIRE_HASHES_IN_ID];
+        if ((state.hashes_wanted & (1U << part)) != 0 &&
+            axg_board_encode_hash(&state.board, id, part, &frame)) {
+            state.hashes_wanted &= (uint8_t) ~(1U << part);
+            record[5].u = 1;
+            memcpy(&record[6].u, &frame.data[0], 4);
+            memcpy(&record[7].u, &frame.data[4], 4);
+        }
+    }
+    for (int i = 0; i < joints; ++i) {
+        *pins->position[i] = state.at[i] - *pins->offset[i];
+        record[AXG_WIRE_SAMPLE_WORDS + i].f = *pins->position[i];
+    }
+    hal_stream_write(&samples_out, record);  // a full stream is a sample lost: its number tells
+}
+
+static void show(const axg_board_motion* motion) {
+    const bool may_pass = motion->may_move && !state.is_latched;
+    *pins->permit_ok = may_pass;
+    *pins->feed_inhibit = !may_pass;
+    *pins->adaptive_feed =
+        motion->may_move ? motion->ordered.of[0] / (double)AXG_BOARD_CAP_NONE : 1;
+    *pins->stopping = state.is_ramping;
+    *pins->estop_ok = !state.is_latched || state.is_ramping;
+    *pins->number = (uint32_t)state.count;
+    *pins->cause = state.board.phase == AXG_BOARD_STOPPED ? (uint32_t)state.board.cause : 0;
+    *pins->refusal = (uint32_t)state.board.last_refusal;
+    *pins->permits = state.board.permits;
+    *pins->left = motion->may_move ? (uint32_t)(motion->end_us - now_us()) : 0;
+    for (int i = 0; i < joints; ++i) {
+        *pins->out[i] = state.at[i];
+        *pins->enable_out[i] = *pins->enable_in[i] || state.is_ramping;
+    }
+}
+
+// The end of a permit is counted in periods: a period that comes late makes it late by as much.
+// Half a period is within the reaction of the machine file; more is a stop.
+static void check_clock(long period_ns) {
+    const int64_t before_ns = state.clock_ns;
+    state.clock_ns = rtapi_get_time();
+    const bool is_late = state.clock_ns - before_ns > (int64_t)period_ns + period_ns / 2;
+    if (before_ns != 0 && is_late && *pins->simulation_wait_us == 0) {
+        ++*pins->late;
+        axg_board_stop(&state.board, now_us());
+    }
+}
+
+static void update(void* unused, long period_ns) {
+    (void)unused;
+    double wanted[AXG_WIRE_JOINTS_MAX];
+    ++state.count;
+    state.period_us = (uint64_t)(period_ns + 500) / 1000;
+    check_clock(period_ns);
+    take_messages();
+    wait_for_the_guard();
+    arm();
+    axg_board_motion motion = axg_board_may_move(&state.board, now_us());
+    change_tool(motion.may_move);
+    const bool is_aligned = read_commands(wanted);
+    const bool is_homing = *pins->home_unguarded && !is_homed();
+    move((motion.may_move || is_homing) && !state.is_latched, wanted, is_aligned,
+         (double)period_ns * 1e-9);
+    if (!is_homing) {
+        axg_board_moves(&state.board, state.still < STILL_PERIODS, now_us());
+    }
+    if (state.has_begun) {
+        axg_board_sample sample;
+        sample.latched_us = now_us();
+        sample.sync = (uint8_t)(state.count % AXG_BOARD_SYNC_MAX + 1U);
+        sample.lap = (uint16_t)(state.count / AXG_BOARD_SYNC_MAX);
+        axg_board_latch(&state.board, &sample);
+    }
+    send_sample();
+    motion = axg_board_may_move(&state.board, now_us());
+    show(&motion);
+}
+
+// --- Loading ----------------------------------------------------------------------------------
+
+#define NEW_PIN(type, direction, where, ...) \
+    (fault = fault ? fault : hal_pin_##type##_newf(direction, where, comp_id, __VA_ARGS__))
+
+static int make_pins(void) {
+    int fault = 0;
+    for (int i = 0; i < joints; ++i) {
+        NEW_PIN(float, HAL_IN, &pins->in[i], "axguard-stop.%d.in", i);
+        NEW_PIN(float, HAL_IN, &pins->offset[i], "axguard-stop.%d.offset", i);
+        NEW_PIN(float, HAL_OUT, &pins->out[i], "axguard-stop.%d.out", i);
+        NEW_PIN(float, HAL_OUT, &pins->position[i], "axguard-stop.%d.position", i);
+        NEW_PIN(bit, HAL_IN, &pins->homed[i], "axguard-stop.%d.homed", i);
+        NEW_PIN(bit, HAL_IN, &pins->enable_in[i], "axguard-stop.%d.enable-in", i);
+        NEW_PIN(bit, HAL_OUT, &pins->enable_out[i], "axguard-stop.%d.enable-out", i);
+    }
+    NEW_PIN(bit, HAL_IN, &pins->arm, "axguard-stop.arm");
+    NEW_PIN(bit, HAL_IN, &pins->home_unguarded, "axguard-stop.home-unguarded");
+    NEW_PIN(bit, HAL_IN, &pins->spindle_on, "axguard-stop.spindle-on");
+    NEW_PIN(bit, HAL_OUT, &pins->permit_ok, "axguard-stop.permit-ok");
+    NEW_PIN(bit, HAL_OUT, &pins->feed_inhibit, "axguard-stop.feed-inhibit");
+    NEW_PIN(bit, HAL_OUT, &pins->estop_ok, "axguard-stop.estop-ok");
+    NEW_PIN(bit, HAL_OUT, &pins->stopping, "axguard-stop.stopping");
+    NEW_PIN(float, HAL_OUT, &pins->adaptive_feed, "axguard-stop.adaptive-feed");
+    NEW_PIN(bit, HAL_IN, &pins->tool_change, "axguard-stop.tool-change");
+    NEW_PIN(bit, HAL_OUT, &pins->tool_changed, "axguard-stop.tool-changed");
+    NEW_PIN(bit, HAL_OUT, &pins->tool_change_out, "axguard-stop.tool-change-out");
+    NEW_PIN(bit, HAL_IN, &pins->tool_changed_in, "axguard-stop.tool-changed-in");
+    NEW_PIN(s32, HAL_IN, &pins->tool_number, "axguard-stop.tool-number");
+    NEW_PIN(u32, HAL_OUT, &pins->number, "axguard-stop.sample");
+    NEW_PIN(u32, HAL_OUT, &pins->cause, "axguard-stop.cause");
+    NEW_PIN(u32, HAL_OUT, &pins->refusal, "axguard-stop.refusal");
+    NEW_PIN(u32, HAL_OUT, &pins->permits, "axguard-stop.permits");
+    NEW_PIN(u32, HAL_OUT, &pins->left, "axguard-stop.left-us");
+    NEW_PIN(u32, HAL_OUT, &pins->last_stop, "axguard-stop.last-stop-periods");
+    NEW_PIN(u32, HAL_OUT, &pins->late, "axguard-stop.late-periods");
+    NEW_PIN(u32, HAL_OUT, &pins->unheard, "axguard-stop.simulation-unheard");
+    NEW_PIN(u32, HAL_IN, &pins->simulation_wait_us, "axguard-stop.simulation-wait-us");
+    return fault ? fault : hal_export_funct("axguard-stop", update, NULL, 1, 0, comp_id);
+}
+
+int rtapi_app_main(void) {
+    if (joints < 1 || joints > AXG_WIRE_JOINTS_MAX) {
+        rtapi_print_msg(RTAPI_MSG_ERR, "axguard-stop: joints: found %d, expected 1 to %d\n", joints,
+                        AXG_WIRE_JOINTS_MAX);
+        return -1;
+    }
+    comp_id = hal_init("axguard_stop");
+    if (comp_id < 0) {
+        return comp_id;
+    }
+    memset(&state, 0, sizeof state);
+    state.still = STILL_PERIODS;
+    pins = hal_malloc(sizeof *pins);
+    int fault = pins == NULL ? -1 : make_pins();
+    if (fault == 0) {
+        fault = hal_stream_create(&samples_out, comp_id, AXG_WIRE_SAMPLES_KEY,
+                                  AXG_WIRE_SAMPLES_DEPTH, AXG_WIRE_SAMPLE_TYPES);
+    }
+    if (fault == 0) {
+        fault = hal_stream_create(&frames_in, comp_id, AXG_WIRE_FRAMES_KEY, AXG_WIRE_FRAMES_DEPTH,
+                                  AXG_WIRE_FRAME_TYPES);
+        if (fault != 0) {
+            hal_stream_destroy(&samples_out);
+        }
+    }
+    if (fault != 0) {
+        rtapi_print_msg(RTAPI_MSG_ERR, "axguard-stop: pins or streams: error %d\n", fault);
+        hal_exit(comp_id);
+        return fault;
+    }
+    hal_ready(comp_id);
+    return 0;
+}
+
+void rtapi_app_exit(void) {
+    hal_stream_destroy(&frames_in);
+    hal_stream_destroy(&samples_out);
+    hal_exit(comp_id);
+}

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What the realtime and the userspace component say to each other, by two HAL streams: a sample of
+// every servo period one way, frames of the guard the other way.
+#ifndef AXG_AXGUARD_WIRE_H
+#define AXG_AXGUARD_WIRE_H
+
+#define AXG_WIRE_JOINTS_MAX 9
+#define AXG_WIRE_SAMPLES_KEY 0x41584701
+#define AXG_WIRE_FRAMES_KEY 0x41584702
+#define AXG_WIRE_SAMPLES_DEPTH 1024
+#define AXG_WIRE_FRAMES_DEPTH 512
+
+// A sample: eight words, then a position of each joint in mm or degrees. Words: number (low, high),
+// nonce, mode | flags << 8 | tool << 16, times that a person armed, 1 if a hash follows, its bytes.
+#define AXG_WIRE_SAMPLE_WORDS 8
+#define AXG_WIRE_SAMPLE_TYPES "uuuuuuuufffffffff"
+
+// To the realtime component: kind | length << 8 | id << 16, two words of data, a value.
+#define AXG_WIRE_FRAME_TYPES "uuuf"
+enum {
+    AXG_WIRE_FRAME = 1,   // a frame of the guard
+    AXG_WIRE_OPTION = 2,  // `length` names the option, the value is its value
+    AXG_WIRE_BEGIN = 3,   // all options were sent: power up
+    AXG_WIRE_DONE = 4     // everything was sent that answers the sample with this number; `length`
+                          // is 1 when the guard may be armed, or is
+};
+
+// Options, in the order of axg_board_options; the last one is the first of AXG_WIRE_JOINTS_MAX.
+enum {
+    AXG_WIRE_PERIOD_US = 0,
+    AXG_WIRE_JITTER_US,
+    AXG_WIRE_REACTION_US,
+    AXG_WIRE_SAMPLES_MAX,
+    AXG_WIRE_AXES,
+    AXG_WIRE_PERMIT_ID,
+    AXG_WIRE_STOP_ID,
+    AXG_WIRE_HASHES_ID,
+    AXG_WIRE_HASHES_IN_ID,
+    AXG_WIRE_HASH,
+    AXG_WIRE_TOOL = AXG_WIRE_HASH + 4,
+    AXG_WIRE_STOPPING,
+    AXG_WIRE_OPTIONS = AXG_WIRE_STOPPING + AXG_WIRE_JOINTS_MAX
+};
+
+#endif

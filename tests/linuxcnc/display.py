@@ -1,0 +1,152 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The DISPLAY program of a LinuxCNC that has none: homes, arms the guard, runs a program and does
+what the scenario wants meanwhile. Writes result.json."""
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import linuxcnc
+
+SCENARIO = json.load(open("scenario.json", encoding="utf-8"))
+COMMAND, STAT, ERRORS = linuxcnc.command(), linuxcnc.stat(), linuxcnc.error_channel()
+RESULT = {"errors": [], "armed": False, "ended": "", "events": []}
+
+
+def pin(name):
+    return subprocess.run(["halcmd", "getp", name], capture_output=True, text=True,
+                          check=False).stdout.strip()
+
+
+def set_pin(name, value):
+    subprocess.run(["halcmd", "setp", name, str(value)], check=True)
+
+
+def poll():
+    STAT.poll()
+    while True:
+        error = ERRORS.poll()
+        if not error:
+            return
+        RESULT["errors"].append(error[1])
+
+
+def until(condition, seconds):
+    end = time.time() + seconds
+    while time.time() < end:
+        poll()
+        if condition():
+            return True
+        time.sleep(0.02)
+    return False
+
+
+def switch_on():
+    COMMAND.state(linuxcnc.STATE_ESTOP_RESET)
+    COMMAND.wait_complete()
+    COMMAND.state(linuxcnc.STATE_ON)
+    COMMAND.wait_complete()
+    COMMAND.mode(linuxcnc.MODE_MANUAL)
+    COMMAND.wait_complete()
+    return until(lambda: STAT.task_state == linuxcnc.STATE_ON, 5)
+
+
+def home():
+    COMMAND.teleop_enable(0)
+    COMMAND.wait_complete()
+    for joint in range(STAT.joints):
+        COMMAND.home(joint)
+    return until(lambda: all(STAT.homed[:STAT.joints]), 10)
+
+
+def arm():
+    set_pin("axguard-stop.arm", 0)
+    time.sleep(0.05)
+    set_pin("axguard-stop.arm", 1)
+    is_armed = until(lambda: pin("axguard-stop.permit-ok") == "TRUE", 10)
+    set_pin("axguard-stop.arm", 0)
+    return is_armed
+
+
+def run_program():
+    COMMAND.mode(linuxcnc.MODE_AUTO)
+    COMMAND.wait_complete()
+    COMMAND.program_open(SCENARIO["program"])
+    COMMAND.wait_complete()
+    COMMAND.auto(linuxcnc.AUTO_RUN, 0)
+    began = time.time()
+    events = list(SCENARIO.get("events", []))
+    time.sleep(0.3)
+    while time.time() - began < SCENARIO["limit_s"]:
+        poll()
+        while events and is_due(events[0], began):
+            act(events.pop(0))
+        if STAT.task_state != linuxcnc.STATE_ON:
+            return "stopped"
+        if STAT.interp_state == linuxcnc.INTERP_IDLE and STAT.inpos:
+            return "done"
+        time.sleep(0.02)
+    return "limit"
+
+
+def is_due(event, began):
+    """After so many seconds, or when a pin has fallen below a value."""
+    if "pin" in event:
+        return float(pin(event["pin"])) < event["below"]
+    return time.time() - began >= event["after_s"]
+
+
+def guard_process():
+    line = subprocess.run(["halcmd", "-s", "show", "comp", "axguard-hal"], capture_output=True,
+                          text=True, check=True).stdout.split()
+    return int(line[line.index("axguard-hal") + 1])
+
+
+def act(event):
+    RESULT["events"].append([event["do"], pin("axguard-stop.sample")])
+    if event["do"] == "kill":  # the guard, which can tell nobody
+        os.kill(guard_process(), signal.SIGKILL)
+    elif event["do"] == "late":  # the servo thread waits, and meanwhile it becomes a real one
+        guard = guard_process()
+        os.kill(guard, signal.SIGSTOP)
+        time.sleep(0.1)
+        set_pin("axguard-stop.simulation-wait-us", 0)
+        time.sleep(0.6)
+        os.kill(guard, signal.SIGCONT)
+    elif event["do"] == "inhibit":
+        subprocess.run(["halcmd", "sets", "inhibit", "1"], check=True)
+    elif event["do"] == "feed":
+        COMMAND.feedrate(event["value"])
+
+
+def main():
+    time.sleep(1)
+    poll()
+    try:
+        RESULT["on"] = switch_on()
+        RESULT["homed"] = home()
+        if SCENARIO["guarded"]:
+            RESULT["armed"] = arm()
+        if RESULT["armed"] or not SCENARIO["guarded"]:
+            RESULT["ended"] = run_program()
+        time.sleep(0.3)
+        poll()
+        if SCENARIO["guarded"]:
+            RESULT["pins"] = {name: pin(name) for name in (
+                "axguard-stop.cause", "axguard-stop.permits", "axguard-stop.last-stop-periods",
+                "axguard-stop.simulation-unheard", "axguard.late", "axguard.samples-lost",
+                "axguard.stops", "axguard-stop.late-periods", "axguard-stop.refusal",
+                "axguard-stop.estop-ok",
+                "axguard.phase")}
+        if SCENARIO.get("again"):
+            RESULT["on_again"] = arm() and switch_on()
+    finally:
+        with open("result.json", "w", encoding="utf-8") as file:
+            json.dump(RESULT, file, indent=1)
+    sys.exit(0)
+
+
+main()

@@ -1,0 +1,236 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""LinuxCNC as the controller, the guard beside it: harmless programs are not stopped, colliding
+ones are stopped by the joints' own ramps before contact, and so is a machine whose guard is killed.
+Usage: loop_test.py SOURCE BUILD [SCENARIO...] [--simulation-wait-us N] [--record FILE]"""
+import argparse
+import json
+import math
+import pathlib
+import shutil
+import sys
+import tempfile
+
+from judge import contacts_of
+from place import NotPossible, Place, module
+
+SKIPPED = 77
+PERIOD_S = 1e-3
+# Of the machine files in firmware_if/linuxcnc/examples.
+STOPPING = {"paper-trunnion": [3500, 3500, 3500, 500, 1000], "xyzac-trt": [400] * 5,
+            "xyzbc-trt": [400] * 5}
+REACTION_PERIODS = 2
+CAUSE_PERSON = 8
+# Of the machine files; and of the comparison with LinuxCNC's kinematics.
+PIVOT, TIP_LENGTH = {"xyzac-trt": (0, 20, 10), "xyzbc-trt": (-20, 0, -15)}, 30
+TIP_ERROR_MM = 1e-3
+TOOL_OF = {"paper-trunnion": 1, "xyzac-trt": 5, "xyzbc-trt": 5}
+HEAD = "T1 M6\nG21 G90 G94\n"
+# Into the plate (tests/can_vm/collide.ngc).
+COLLIDE = HEAD + "G0 X20 Y50\nG0 X0 Y107.132 A-19.2 C97\nG0 Z-230\nM2\n"
+# The same, slower and in a feed.
+COLLIDE_FEED = HEAD + "G0 X20 Y50\nG0 X0 Y107.132 A-19.2 C97\nG1 Z-230 F3000\nM2\n"
+# Long moves far from everything.
+SWING = HEAD + "G0 X100 Y-80 Z40\nG0 X-100 Y80 A-20 C90\n" * 4 + "G0 X0 Y0 Z50 A0 C0\nM2\n"
+
+
+# With LinuxCNC's kinematics for the tool's tip: tilted above the plate, and into it.
+TIP = "T5 M6\nG21 G90 G94\nG43 H5\nM428\nG1 X20 Y0 Z60 F1000\nG1 A-20 C45\nG1 X-10 Y15 Z20 C80\n"
+TIP_CLEAN = TIP + "G1 X20 Y-10 Z40 A10\nM429\nM2\n"
+TIP_COLLIDE = TIP + "G1 Z-5\nM429\nM2\n"
+
+
+def clean_program(source, lines):
+    text = (source / "hil_replay/programs/paper-trunnion-clean.ngc").read_text(encoding="ascii")
+    rows = text.strip().strip("%").strip().splitlines()
+    return "\n".join(rows if lines is None else rows[:lines] + ["G0 Z50", "M2"]) + "\n"
+
+
+def scenarios(source):
+    """name: (program, whether it is stopped, what happens meanwhile)."""
+    kill = [{"do": "kill", "after_s": 1.5}]
+    feed = [{"do": "feed", "after_s": 1.0, "value": 0.3}, {"do": "feed", "after_s": 2.5,
+                                                          "value": 1.2}]
+    return {
+        "clean": (clean_program(source, 60), False, {}),
+        "collide": (COLLIDE, True, {"again": True}),
+        "collide_feed": (COLLIDE_FEED, True, {"events": [{"do": "feed", "after_s": 0.5,
+                                                          "value": 1.3}]}),
+        "kill": (SWING, True, {"events": kill}),
+        "kill_approach": (COLLIDE, True, {"events": [
+            {"do": "kill", "pin": "axguard-stop.2.position", "below": -60}]}),
+        "late": (SWING, True, {"events": [{"do": "late", "after_s": 1.5}]}),
+        "feed": (SWING, False, {"events": feed}),
+        "unguarded": (COLLIDE, False, {}),
+        "xyzac_clean": (TIP_CLEAN, False, {}),
+        "xyzac_collide": (TIP_COLLIDE, True, {}),
+        "xyzbc_clean": (TIP_CLEAN.replace("A", "B"), False, {}),
+        "xyzbc_collide": (TIP_COLLIDE.replace("A", "B"), True, {}),
+        "clean_whole": (clean_program(source, None), False, {}),
+    }
+
+
+USUAL = ["clean", "collide", "collide_feed", "kill", "kill_approach", "late", "feed",
+         "unguarded", "xyzac_clean", "xyzac_collide", "xyzbc_clean", "xyzbc_collide"]
+
+
+def tip_error(rows, machine):
+    """How far LinuxCNC's live kinematics and the machine file differ, mm: while A or B tilts and C
+    turns the tool's tip has to stay at X20 Y0 Z60 of the workpiece. And in how many periods."""
+    worst, count = 0, 0
+    px, py, pz = PIVOT[machine]
+    for _, x, y, z, tilt_deg, c_deg, *_ in rows:
+        if not (-19 < tilt_deg < -1 and 0 < c_deg < 45):
+            continue
+        tilt, c = math.radians(tilt_deg), math.radians(c_deg)
+        x, y, z = x - px, y - py, z - TIP_LENGTH - pz
+        if machine == "xyzac-trt":
+            y, z = (math.cos(tilt) * y + math.sin(tilt) * z,
+                    -math.sin(tilt) * y + math.cos(tilt) * z)
+        else:
+            x, z = (math.cos(tilt) * x - math.sin(tilt) * z,
+                    math.sin(tilt) * x + math.cos(tilt) * z)
+        x, y, z = x + px, y + py, z + pz
+        x, y = math.cos(c) * x + math.sin(c) * y, -math.sin(c) * x + math.cos(c) * y
+        worst, count = max(worst, math.dist((x, y, z), (20, 0, 60))), count + 1
+    return worst, count
+
+
+def stop_facts(rows, stopping):
+    """Of the last ramp: its periods beside the longest that the promise allows; the same from the
+    sample at which the last permit was used; and whether a joint turned round."""
+    ends = [i for i in range(2, len(rows)) if rows[i][7] and not rows[i - 1][7]]
+    if not ends:
+        return None
+    first = ends[0]
+    before = [rows[first - 1][1 + j] - rows[first - 2][1 + j] for j in range(5)]
+    rest = first
+    while rest < len(rows) and rows[rest][1:6] != rows[rest - 1][1:6]:
+        rest += 1
+    ramp = max(abs(step) / PERIOD_S / d for step, d in zip(before, stopping)) / PERIOD_S
+    # While no permit comes, the time that is left falls by a period each period.
+    used = first - 1
+    while used > 0 and rows[used][8] < rows[used - 1][8]:
+        used -= 1
+    turned = any((rows[i][1 + j] - rows[i - 1][1 + j]) * before[j] < -1e-12
+                 for i in range(first, rest) for j in range(5))
+    return {"at": rows[first][0], "turned": turned,
+            "speeds": [round(abs(step) / PERIOD_S, 1) for step in before],
+            "periods": rest - first + 1, "promised": round(REACTION_PERIODS + ramp + 1, 1),
+            "permit_left": rows[used][8] / 1000, "from_last_permit": rest - used,
+            "from_last_permit_promised": round(rows[used][8] / 1000 + REACTION_PERIODS + ramp + 1,
+                                               1)}
+
+
+def check(name, is_stopped, said, rows, overruns, judged, facts):
+    faults = []
+    if not said.get("homed") or not said.get("on"):
+        return [f"{name}: LinuxCNC did not come up: {said}"]
+    numbers = [row[0] for row in rows]
+    lost = sum(b - a - 1 for a, b in zip(numbers, numbers[1:]) if b > a)
+    if name != "unguarded" and (lost or overruns):
+        faults.append(f"{name}: {lost} periods are missing in the record")
+    if name == "unguarded":
+        if not judged["stops"]:
+            faults.append("unguarded: the judge saw no contact: it would see none elsewhere")
+        return faults
+    if not said["armed"] or "pins" not in said:
+        return faults + [f"{name}: not armed"]
+    wanted = "stopped" if is_stopped else "done"
+    if said["ended"] != wanted:
+        faults.append(f"{name}: found {said['ended']}, expected {wanted}")
+    if judged["stops"]:
+        faults.append(f"{name}: contact: {judged['stops'][0]}")
+    if is_stopped and facts is None:
+        faults.append(f"{name}: no ramp in the record")
+    if facts and is_stopped:
+        if facts["periods"] > facts["promised"]:
+            faults.append(f"{name}: {facts['periods']} periods to standstill, promised "
+                          f"{facts['promised']:.1f}")
+        if facts["from_last_permit"] > facts["from_last_permit_promised"]:
+            faults.append(f"{name}: {facts['from_last_permit']} periods from the last permit")
+        if facts["turned"]:
+            faults.append(f"{name}: a joint turned round in the stop")
+    if name.startswith("kill") and said["pins"]["axguard-stop.cause"] != "3":
+        faults.append(f"{name}: the stop has another cause than the end of the permit")
+    if name in ("xyzac_clean", "xyzbc_clean"):
+        worst, count = tip_error(rows, f"{name[:5]}-trt")
+        print(f"{name}: live kinematics: {worst:.2e} mm off at most, {count} periods")
+        if count < 1000 or worst > TIP_ERROR_MM:
+            faults.append(f"{name}: LinuxCNC's kinematics are not those of the machine file")
+    if name == "late" and said["pins"]["axguard-stop.cause"] != str(CAUSE_PERSON):
+        faults.append("late: the stop has another cause than the late period")
+    if name == "collide" and not said.get("on_again"):
+        faults.append("collide: not armed and switched on again after the stop")
+    return faults
+
+
+def run_all(given):
+    # Not in a folder of root's own: LinuxCNC runs as somebody else.
+    folder = given.keep or pathlib.Path(tempfile.mkdtemp(prefix="axg-linuxcnc-", dir="/tmp"))
+    folder.mkdir(exist_ok=True)
+    folder.chmod(0o755)
+    faults, facts_of = [], {}
+    for name in given.scenario or USUAL:
+        program, is_stopped, more = scenarios(given.source)[name]
+        machine = f"{name[:5]}-trt" if name.startswith("xyz") else "paper-trunnion"
+        place = Place(folder / name, given.source, given.build, machine)
+        place.prepare(program, name != "unguarded", given.simulation_wait_us,
+                      limit_s=given.limit_s, **more)
+        said, output = place.run(given.limit_s + 40)
+        if not said:
+            print(output)
+            faults.append(f"{name}: LinuxCNC did not start")
+            continue
+        rows, overruns = place.samples()
+        # Before they are homed nobody knows where the joints are.
+        armed = next((i for i, row in enumerate(rows) if row[6]), 0)
+        judged = contacts_of([row[1:6] for row in rows[armed:]], TOOL_OF[machine],
+                             place.folder / f"{machine}.yaml", place.folder, place.folder,
+                             given.build / "axguard")
+        facts = stop_facts(rows, STOPPING[machine])
+        mine = check(name, is_stopped, said, rows, overruns, judged, facts)
+        facts_of[name] = {"samples": len(rows), "overruns": overruns, "ended": said.get("ended"),
+                          "contacts": len(judged["stops"]), "stop": facts,
+                          "pins": said.get("pins"), "errors": said.get("errors")}
+        print(json.dumps({name: facts_of[name]}))
+        print("\n".join(line for line in output.splitlines() if "axguard" in line))
+        if mine:
+            print("\n".join(mine), output[-3000:], sep="\n")
+        faults += mine
+    if not given.keep:
+        shutil.rmtree(folder, ignore_errors=True)
+    return faults, facts_of
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("source", type=pathlib.Path)
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("scenario", nargs="*")
+    parser.add_argument("--simulation-wait-us", type=int, default=400000)
+    parser.add_argument("--record", type=pathlib.Path)
+    parser.add_argument("--limit-s", type=float, default=60)
+    parser.add_argument("--keep", type=pathlib.Path)
+    given = parser.parse_args()
+    for file in ("axguard", "axguard-hal", "axguard_stop.so"):
+        if not (given.build / file).exists():
+            print(f"skipped: {file} is not built (apt install linuxcnc-uspace-dev)")
+            return SKIPPED
+    if shutil.which("linuxcnc") is None:
+        print("skipped: no linuxcnc (apt install linuxcnc-uspace)")
+        return SKIPPED
+    try:
+        with module(given.build):
+            faults, facts_of = run_all(given)
+    except NotPossible as what:
+        print(f"skipped: {what}")
+        return SKIPPED
+    if given.record:
+        given.record.write_text(json.dumps(facts_of, indent=1), encoding="utf-8")
+    print("\n".join(faults) if faults else "ok")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

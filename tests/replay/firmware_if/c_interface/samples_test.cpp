@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+// Samples in place of frames: the same permits and the same stop as from the frames of a board,
+// the number of each sample is believed, and what is no sample of the machine is refused.
+#include <cstring>
+#include <numbers>
+
+#include "firmware_if/receiver/axis_receiver.hpp"
+#include "tests/support/c_host.hpp"
+#include "tests/support/simulated_frames.hpp"
+
+namespace axg {
+namespace {
+
+constexpr std::uint32_t kNonce = 0xC0FFEE;
+
+/// The samples of a trace, as their receiver has them.
+std::vector<axg_sample> samples_of(const Machine& machine, std::span<const CanFrame> frames) {
+    std::vector<axg_sample> samples;
+    AxisReceiver receiver(machine);
+    std::int64_t first = -1;
+    for (const CanFrame& frame : frames) {
+        const ReceiverEvent event = receiver.on_frame(frame);
+        if (event.kind != ReceiverEvent::Kind::snapshot) {
+            continue;
+        }
+        const AxisSnapshot& snapshot = event.snapshot;
+        first = first < 0 ? event.sync_counter - 1 : first;
+        axg_sample sample{};
+        sample.latched_us = snapshot.latched_us;
+        sample.number = static_cast<std::uint64_t>(first) + snapshot.sample;
+        sample.axis_count = snapshot.axis_count;
+        sample.nonce = kNonce;
+        sample.tool = snapshot.tool;
+        sample.mode = snapshot.mode;
+        sample.flags = snapshot.flags;
+        for (std::uint32_t i = 0; i < snapshot.axis_count; ++i) {
+            const bool is_rotary = machine.axes[i].kind == AxisKind::rotary;
+            sample.position[i] =
+                snapshot.position[i] * (is_rotary ? 180.0 / std::numbers::pi : 1.0);
+        }
+        samples.push_back(sample);
+    }
+    return samples;
+}
+
+/// Words, echoes and n of the permits, in order.
+struct Permits {
+    void operator()(const axg_frame& frame, std::int64_t) {
+        if (frame.id == 0x103) {
+            words.push_back({frame.data[0], frame.data[1], frame.data[7]});
+        }
+    }
+    std::vector<std::array<std::uint8_t, 3>> words;
+};
+
+void play_sample(test::CHost& host, const axg_sample& sample) {
+    while (host.ok && host.state.next_due_us < sample.latched_us) {
+        host.cycle(host.state.next_due_us);
+    }
+    EXPECT_EQ(axg_guard_put_sample(host.guard, &sample, sample.latched_us + 450), AXG_STATUS_OK);
+    host.cycle(sample.latched_us + 450);
+}
+
+/// Until a stop, or the end: how many samples were played.
+std::size_t play_samples(test::CHost& host, std::span<const axg_sample> samples) {
+    EXPECT_EQ(axg_guard_start(host.guard, samples[0].latched_us), AXG_STATUS_OK);
+    host.state.next_due_us = samples[0].latched_us;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        play_sample(host, samples[i]);
+        if (!host.ok || host.state.phase == AXG_PHASE_STOPPED) {
+            return i + 1;
+        }
+    }
+    return samples.size();
+}
+
+const std::vector<CanFrame>& demo_frames() {
+    static const std::vector<CanFrame> frames = [] {
+        const test::Workshop shop;
+        return test::simulated_frames(test::load_paper_machine().machine,
+                                      test::after_rest(shop, test::kDemoProgram));
+    }();
+    return frames;
+}
+
+TEST(CInterfaceSamples, AreTheSameGuardAsTheirFrames) {
+    const Machine machine = test::load_paper_machine().machine;
+    const std::vector<axg_sample> samples = samples_of(machine, demo_frames());
+    Permits of_frames, of_samples;
+    test::CHost framed(test::c_options(AXG_MODE_STOPPABLE));
+    framed.arms_from_us = samples[0].latched_us + 300'000;
+    framed.on_sent = std::ref(of_frames);
+    framed.play(demo_frames());
+    test::CHost sampled(test::c_options(AXG_MODE_STOPPABLE));
+    sampled.arms_from_us = framed.arms_from_us;
+    sampled.on_sent = std::ref(of_samples);
+    play_samples(sampled, samples);
+    ASSERT_EQ(sampled.state.phase, AXG_PHASE_STOPPED);
+    EXPECT_STREQ(sampled.state.reason, framed.state.reason);
+    EXPECT_STREQ(sampled.state.reason, "predicted");
+    EXPECT_EQ(sampled.state.pair, framed.state.pair);
+    EXPECT_EQ(sampled.state.samples_lost, 0U);
+    EXPECT_EQ(sampled.state.snapshots, framed.state.snapshots);
+    EXPECT_GT(of_samples.words.size(), 1000U);
+    // A set of frames takes its time on the bus: there the arming is one sample earlier.
+    ASSERT_LE(of_frames.words.size() - of_samples.words.size(), 1U);
+    of_frames.words.erase(
+        of_frames.words.begin(),
+        of_frames.words.end() - static_cast<std::ptrdiff_t>(of_samples.words.size()));
+    EXPECT_TRUE(of_samples.words == of_frames.words);
+}
+
+TEST(CInterfaceSamples, TheStateSaysWhatWasProven) {
+    const Machine machine = test::load_paper_machine().machine;
+    const std::vector<axg_sample> samples = samples_of(machine, demo_frames());
+    test::CHost host(test::c_options(AXG_MODE_STOPPABLE));
+    ASSERT_EQ(axg_guard_start(host.guard, samples[0].latched_us), AXG_STATUS_OK);
+    host.cycle(samples[0].latched_us);
+    EXPECT_EQ(host.state.proof.samples_evaluated, 0U);
+    EXPECT_EQ(host.state.proof.samples, 0);
+    for (std::size_t i = 0; host.state.phase != AXG_PHASE_STOPPED || i < 50; ++i) {
+        ASSERT_LT(i, samples.size());
+        play_sample(host, samples[i]);
+        const axg_proof& proof = host.state.proof;
+        if (host.state.phase == AXG_PHASE_ARMED) {
+            ASSERT_EQ(proof.is_proven, 1) << i;
+            ASSERT_STREQ(proof.reason, "none");
+            ASSERT_STREQ(proof.withheld, "nothing");
+            ASSERT_GE(proof.samples, machine.can.permit_samples.least);
+            ASSERT_EQ(proof.sync_counter, samples[i].number % 240 + 1);
+            ASSERT_EQ(proof.cap, 250);
+        }
+    }
+    const axg_proof& proof = host.state.proof;
+    EXPECT_EQ(proof.is_proven, 0);
+    EXPECT_EQ(proof.samples, 0);
+    EXPECT_STREQ(proof.reason, "predicted");
+    EXPECT_EQ(proof.pair, host.state.pair);
+    EXPECT_EQ(proof.needed_mm, machine.pairs[proof.pair].margin_mm);
+    EXPECT_EQ(proof.clearance_mm, -1);
+}
+
+// A number that is left out is a sample that was lost, wherever it was lost.
+TEST(CInterfaceSamples, ANumberLeftOutIsASampleLost) {
+    const Machine machine = test::load_paper_machine().machine;
+    std::vector<axg_sample> samples = samples_of(machine, demo_frames());
+    samples.resize(600);
+    samples.erase(samples.begin() + 400, samples.begin() + 402);
+    test::CHost host(test::c_options(AXG_MODE_STOPPABLE));
+    play_samples(host, samples);
+    EXPECT_EQ(host.state.samples_lost, 2U);
+    EXPECT_EQ(host.state.phase, AXG_PHASE_ARMED) << host.state.cause;
+}
+
+TEST(CInterfaceSamples, WhatIsNoSampleOfTheMachineIsRefused) {
+    const Machine machine = test::load_paper_machine().machine;
+    const axg_sample good = samples_of(machine, demo_frames()).front();
+    const std::int64_t now_us = good.latched_us;
+    test::CHost host(test::c_options(AXG_MODE_CONTACT));
+    EXPECT_EQ(axg_guard_put_sample(host.guard, &good, now_us), AXG_STATUS_BAD_CALL) << "not begun";
+    ASSERT_EQ(axg_guard_start(host.guard, now_us), AXG_STATUS_OK);
+    EXPECT_EQ(axg_guard_put_sample(nullptr, &good, now_us), AXG_STATUS_BAD_CALL);
+    EXPECT_EQ(axg_guard_put_sample(host.guard, nullptr, now_us), AXG_STATUS_BAD_CALL);
+    EXPECT_EQ(axg_guard_put_sample(host.guard, &good, now_us - 1), AXG_STATUS_BAD_CALL);
+    const auto refused = [&](void (*spoil)(axg_sample&)) {
+        axg_sample sample = good;
+        spoil(sample);
+        return axg_guard_put_sample(host.guard, &sample, now_us) == AXG_STATUS_BAD_CALL;
+    };
+    EXPECT_TRUE(refused([](axg_sample& sample) { sample.axis_count = 4; }));
+    EXPECT_TRUE(refused([](axg_sample& sample) { sample.nonce = 1U << 24; }));
+    EXPECT_TRUE(refused([](axg_sample& sample) { sample.reserved[0] = 1; }));
+    EXPECT_TRUE(refused([](axg_sample& sample) { sample.position[0] = 1e9; }));
+    EXPECT_TRUE(refused([](axg_sample& sample) { sample.position[1] = NAN; }));
+    EXPECT_EQ(axg_guard_put_sample(host.guard, &good, now_us), AXG_STATUS_OK);
+}
+
+TEST(CInterfaceSamples, TheTermsAreThoseOfTheMachineFile) {
+    const Machine machine = test::load_paper_machine().machine;
+    const test::CHost host(test::c_options(AXG_MODE_CONTACT));
+    axg_terms terms{};
+    EXPECT_EQ(axg_guard_terms(host.guard, nullptr), AXG_STATUS_BAD_CALL);
+    ASSERT_EQ(axg_guard_terms(host.guard, &terms), AXG_STATUS_OK);
+    EXPECT_EQ(terms.period_us, 1000U);
+    EXPECT_EQ(terms.reaction_us, 2000U);
+    EXPECT_EQ(terms.jitter_us, 20U);
+    EXPECT_EQ(terms.permit_samples_max, machine.can.permit_samples.most);
+    EXPECT_EQ(terms.permit_version, 2);
+    EXPECT_EQ(terms.first_tool, 1);
+    EXPECT_EQ(terms.takes_samples, 1);
+    EXPECT_EQ(terms.is_independent, 1);
+    ASSERT_EQ(terms.axis_count, 5U);
+    EXPECT_STREQ(terms.axes[3].name, "A");
+    EXPECT_EQ(terms.axes[3].is_rotary, 1);
+    EXPECT_DOUBLE_EQ(terms.axes[3].min, -110);
+    EXPECT_DOUBLE_EQ(terms.axes[3].stopping, 500);
+    EXPECT_DOUBLE_EQ(terms.axes[0].jerk, 50000);
+    EXPECT_EQ(terms.axes[4].is_endless, 1);
+}
+
+// A program that was compiled with the version before: its axg_state ends where it did.
+TEST(CInterfaceSamples, AProgramOfVersion2GetsTheStateOfVersion2) {
+    axg_options options = test::c_options(AXG_MODE_CONTACT);
+    for (const std::uint32_t version : {2U, AXG_INTERFACE_VERSION}) {
+        options.version = version;
+        test::CHost host(options);
+        ASSERT_EQ(axg_guard_start(host.guard, 0), AXG_STATUS_OK);
+        std::array<unsigned char, sizeof(axg_state)> memory{};
+        memory.fill(0x5A);
+        axg_state* const state = reinterpret_cast<axg_state*>(memory.data());
+        ASSERT_EQ(axg_guard_process(host.guard, 0, state), AXG_STATUS_OK);
+        EXPECT_EQ(state->phase, AXG_PHASE_SELFTEST);
+        const unsigned char* const end = memory.data() + memory.size();
+        const unsigned char* const behind = memory.data() + offsetof(axg_state, proof);
+        const bool is_untouched = std::all_of(behind, end, [](auto b) { return b == 0x5A; });
+        EXPECT_EQ(is_untouched, version == 2U);
+    }
+}
+
+}  // namespace
+}  // namespace axg
