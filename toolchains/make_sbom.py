@@ -140,9 +140,9 @@ def dependencies(build):
 
 
 def cuda_version(build):
-    """Of the compiler that CMake found; empty without one."""
+    """Of the toolkit that CMake found, whose runtime is used; empty without one."""
     for found in build.glob("CMakeFiles/*/CMakeCUDACompiler.cmake"):
-        match = re.search(r'CMAKE_CUDA_COMPILER_VERSION "([0-9.]+)"', found.read_text())
+        match = re.search(r'CMAKE_CUDA_COMPILER_TOOLKIT_VERSION "([0-9.]+)"', found.read_text())
         if match:
             return match.group(1)
     return ""
