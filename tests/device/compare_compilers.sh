@@ -37,6 +37,7 @@ compile() { # SOURCE OBJECTS: with the flags of cuda/CMakeLists.txt and toolchai
     esac
 }
 export -f compile
+# shellcheck disable=SC2016 # the words are the inner shell's
 find "$root"/cuda/{engine,paper} "$root/tests/device/kernel_answers.cpp" \
     \( -name '*.cu' -o -name '*.cpp' \) ! -name 'absent_*' -print0 |
     xargs -0 -P "$(nproc)" -I{} bash -c 'compile "$1" "$2"' _ {} "$objects"
@@ -44,15 +45,15 @@ libraries=()
 while IFS= read -r -d '' library; do
     libraries+=("$library")
 done < <(find "$build/core" -name 'lib*.a' -print0)
-# The C++ library inside: the machine there may have an older one.
+# The machine there has a C++ library of its own, of GCC 11 or newer.
 link() { # PROGRAM PART...
-    g++ -static-libstdc++ -static-libgcc -o "$fresh/$1" "${@:2}" -Wl,--start-group \
+    g++ -o "$fresh/$1" -Wl,--start-group "${@:2}" \
         "${libraries[@]}" "$build"/cuda/{engine,paper}/lib*.a -Wl,--end-group -lpthread -ldl -lrt
     strip "$fresh/$1"
 }
 mkdir "$fresh/lib"
 cp "$cuda/lib/libcudart.so.12" "$fresh/lib/"
-# The parts come before the archives, so those of nvcc stay out of this one.
+# Its own objects come before the archives, whose kernels by nvcc so stay outside.
 link clang "$objects"/*.o "$fresh/lib/libcudart.so.12"
 link nvcc "$build/tests/device/CMakeFiles/axg_kernel_answers.dir/kernel_answers.cpp.o" \
     "$(dirname "$(dirname "$(readlink -f "$(command -v nvcc)")")")/lib64/libcudart_static.a"
