@@ -4,14 +4,14 @@
 # machine, each with its list of dependencies, checked (check_packages.py). Prints sizes, what
 # kind of files the programs are, and which devices they hold kernels for.
 # Example: ./setup.sh --all && toolchains/build_packages.sh
-#          toolchains/build_packages.sh jetson-thor      this preset alone
+#          toolchains/build_packages.sh jetson-thor      this preset alone; so also jetson-orin-jp6
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 presets=("$@")
 [[ $# -gt 0 ]] || presets=(jetson-thor jetson-orin host-package)
 for preset in "${presets[@]}"; do
     case $preset in
-        jetson-thor | jetson-orin | host-package) ;;
+        jetson-thor | jetson-orin | jetson-orin-jp6 | host-package) ;;
         *) sed -n '3,7p' "$0" >&2; exit 2 ;;
     esac
 done
@@ -22,6 +22,9 @@ trap 'steps_end' EXIT
 if [[ ${presets[*]} == *jetson* ]]; then
     step "sysroot" "$root/toolchains/sysroot.sh"
     step "CUDA for aarch64" "$root/toolchains/cuda_toolkit.sh" aarch64
+fi
+if [[ ${presets[*]} == *jp6* ]]; then
+    step "CUDA 12.6 for aarch64" "$root/toolchains/jetpack6_toolkit.sh"
 fi
 
 pack() { # PRESET: debian/rules in a folder of the build, so that the source stays as it is

@@ -28,6 +28,7 @@ SPDX_NAMES = {"Expat": "MIT", "BSD-3-clause": "BSD-3-Clause", "BSD-2-clause": "B
 READ_BY_HAND = {"libfmt-dev": "MIT WITH fmt-exception", "libfmt9": "MIT WITH fmt-exception",
                 "libc6-dev": "LGPL-2.1-or-later", "libc6": "LGPL-2.1-or-later",
                 "linux-libc-dev": "GPL-2.0-only WITH Linux-syscall-note",
+                "libclang-common-19-dev": "Apache-2.0 WITH LLVM-exception",
                 "libgcc-12-dev": "GPL-3.0-or-later WITH GCC-exception-3.1",
                 "libgcc-s1": "GPL-3.0-or-later WITH GCC-exception-3.1",
                 "libstdc++-12-dev": "GPL-3.0-or-later WITH GCC-exception-3.1",
@@ -140,9 +141,9 @@ def dependencies(build):
 
 
 def cuda_version(build):
-    """Of the compiler that CMake found; empty without one."""
+    """Of the toolkit that CMake found, whose runtime is used; empty without one."""
     for found in build.glob("CMakeFiles/*/CMakeCUDACompiler.cmake"):
-        match = re.search(r'CMAKE_CUDA_COMPILER_VERSION "([0-9.]+)"', found.read_text())
+        match = re.search(r'CMAKE_CUDA_COMPILER_TOOLKIT_VERSION "([0-9.]+)"', found.read_text())
         if match:
             return match.group(1)
     return ""

@@ -118,7 +118,9 @@ __device__ bool touches(const Triangle& a, const Triangle& b, std::uint8_t* carr
 template <bool kInterchange, bool kPrefetch, bool kUnroll, bool kCarry>
 __global__ void __launch_bounds__(kThreads)
     test_pairs_kernel(const __grid_constant__ TestArguments q) {
-    __shared__ Tile tile;
+    // As bytes: clang refuses a shared variable whose members have initial values.
+    alignas(Tile) __shared__ unsigned char space[sizeof(Tile)];
+    Tile& tile = *reinterpret_cast<Tile*>(space);
     const unsigned count = group_pairs(q), t = threadIdx.y * kSide + threadIdx.x;
     unsigned tested = 0;
     Vec3f next{};

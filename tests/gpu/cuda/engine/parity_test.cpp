@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "tests/support/awkward_triangles.hpp"
 #include "tests/support/cuda_fixture.hpp"
 #include "tests/support/engine_fixture.hpp"
 #include "tests/support/engine_parity.hpp"
@@ -133,23 +134,6 @@ TEST(CudaParity, FewPlaces) {
     EXPECT_GT(totals.overflows, count / 100) << "the small capacities were met";
 }
 
-/// Triangles without area, needles, and next to nothing: what a separating axis can stumble over.
-Mesh awkward(test::Draw& draw, std::uint32_t kind) {
-    Mesh mesh{"awkward", {}};
-    const float size = kind == 0 ? 20.0F : kind == 1 ? 0x1p-140F : 300.0F;
-    const auto vertex = [&](float s) {
-        const auto x = [&] { return s * static_cast<float>(static_cast<int>(draw.below(9)) - 4); };
-        return Vec3f{x(), x(), x()};
-    };
-    const std::uint32_t count = 1 + draw.below(400);
-    for (std::uint32_t i = 0; i < count; ++i) {
-        const Vec3f at = vertex(size), to = at + vertex(size * 0.25F);
-        const Vec3f third = draw.below(3) == 0 ? to : at + vertex(size * 0.25F);
-        mesh.triangles.push_back({at, draw.below(9) == 0 ? at : to, third});
-    }
-    return mesh;
-}
-
 TEST(CudaParity, DegenerateTriangles) {
     test::Draw draw{test::printed_seed(13)};
     Totals totals;
@@ -157,7 +141,7 @@ TEST(CudaParity, DegenerateTriangles) {
     for (std::uint32_t scene = 0; scene < scenes; ++scene) {
         std::vector<Mesh> meshes;
         for (std::uint32_t i = 0; i < 6; ++i) {
-            meshes.push_back(awkward(draw, i % 3));
+            meshes.push_back(test::awkward_triangles(draw, i % 3));
         }
         AXG_CUDA_ENGINE_OR_SKIP(gpu, meshes, test::ample(), CudaOptions{});
         std::optional<CpuEngine> cpu = test::engine_over(meshes);
