@@ -215,6 +215,9 @@ void add_guard(Lines& lines, const GuardRules& guard) {
     }
     lines.add("guard.speed_cap", guard.speed_cap ? 1U : 0U);
     lines.add("guard.cap_lead_s", {guard.cap_lead_s});
+    if (guard.cap != CapPromise::none) {
+        lines.add("guard.cap", to_text(guard.cap));
+    }
     lines.add("guard.level_band_mm", {guard.level_band_mm});
     lines.add("guard.level_hold_samples", guard.level_hold_samples);
     lines.add("guard.jog.is_promised", guard.jog.is_promised ? 1U : 0U);

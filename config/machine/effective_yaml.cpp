@@ -276,6 +276,7 @@ void fill_guard(YamlNode& map, const GuardRules& guard) {
     fill_none(map, {"rounds", "questions"});  // older names: cycle
     fill(map, "speed_cap", value_of(guard.speed_cap));
     fill(map, "cap_lead_ms", value_of(guard.cap_lead_s * 1e3));
+    fill(map, "cap", value_of(to_text(guard.cap)));
     fill(map, "slow_mm", value_of(0U));
     fill(map, "warn_mm", value_of(0U));
     fill(map, "level_band_mm", value_of(guard.level_band_mm));

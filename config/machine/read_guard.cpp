@@ -70,6 +70,38 @@ void read_jog(MapReader& guard_reader, MachineDraft& draft) {
     jog.is_promised = true;
 }
 
+/// What an enforced cap needs of the frames: a permit that says it, a sample that acknowledges it.
+void read_cap(MapReader& reader, Machine& machine) {
+    constexpr std::array<std::string_view, 3> kCaps{"none", "all_axes", "per_axis"};
+    std::size_t cap = 0;
+    if (!reader.choice("cap", Need::optional, kCaps, cap) || cap == 0) {
+        return;
+    }
+    const std::string found{kCaps[cap]};
+    const CanLayout& can = machine.can;
+    const bool has_ack = can.format == CanFormat::classical || can.format == CanFormat::fd;
+    if (cap == static_cast<std::size_t>(CapPromise::per_axis)) {
+        reader.report("cap", found, "none or all_axes; the guard does not choose single axes yet");
+    } else if (!has_ack) {
+        reader.report(
+            "cap", found + " with frames of another format",
+            "none, or can.format classical or fd; other formats do not acknowledge a cap");
+    } else if (!has_session(can)) {
+        reader.report("cap", found + " with can.permit: 1",
+                      "none, or permit: 2; no proof may use the cap of a permit of version 1");
+    } else if (!tries_longer(can.permit_samples)) {
+        reader.report(
+            "cap", found + " with one number as can.permit_samples",
+            "none, or two numbers, such as [3, 12]; the cap falls where the longer permit "
+            "is not proven");
+    } else if (can.look_ahead_samples != 0) {
+        reader.report("cap", found + " with can.ahead",
+                      "none, or no ahead; the look-ahead path bounds the motion already");
+    } else {
+        machine.guard.cap = static_cast<CapPromise>(cap);
+    }
+}
+
 /// SYNC of the guard ends later than its instant by the time to wake up, by a frame that has the
 /// bus, and by its own: no bus is so fast that the usual value covers that.
 void check_sync_jitter(MapReader& reader, const Machine& machine) {
@@ -105,7 +137,8 @@ void read_guard(MapReader& top, MachineDraft& draft) {
                       "obeyed_by",  "stop_reversal",     "limits_broken",   "travel_enforced",
                       "rounds",     "questions",         "speed_cap",       "cap_lead_ms",
                       "slow_mm",    "warn_mm",           "level_band_mm",   "level_hold_samples",
-                      "single_jog", "travel_proofs",     "overrun_mm",      "overrun_deg"},
+                      "single_jog", "travel_proofs",     "overrun_mm",      "overrun_deg",
+                      "cap"},
                      draft.faults};
     read_promise(reader, draft.machine);
     GuardRules& out = draft.machine.guard;
@@ -154,6 +187,7 @@ void read_guard(MapReader& top, MachineDraft& draft) {
     if (reader.number("cap_lead_ms", Need::optional, {0, 1000}, value)) {
         out.cap_lead_s = value / 1e3;
     }
+    read_cap(reader, draft.machine);
     read_clearance_levels(reader, draft.usual_clearance_levels);
     reader.number("level_band_mm", Need::optional, {0, 100}, out.level_band_mm);
     reader.whole("level_hold_samples", Need::optional, {1, 100'000}, out.level_hold_samples);

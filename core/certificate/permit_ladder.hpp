@@ -13,6 +13,13 @@
 
 namespace axg {
 
+/// With an enforced cap every cycle tries the same longer n, and the cap falls where it fails: ten
+/// samples lose next to no permit by chance (docs/reference/machine-file.md).
+inline constexpr std::uint8_t kSamplesWork = 10;
+[[nodiscard]] constexpr std::uint8_t samples_work(PermitSamples range) noexcept {
+    return kSamplesWork > range.least ? std::min(kSamplesWork, range.most) : range.most;
+}
+
 inline constexpr std::array<std::uint8_t, 7> kSamplesTried{4, 5, 6, 8, 10, 12, 15};
 
 /// The next higher, the most at last.

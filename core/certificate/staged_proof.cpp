@@ -24,6 +24,19 @@ void add(WorkLists& sum, const WorkLists& more) noexcept {
     sum.rechecks += more.rechecks;
 }
 
+/// What is proven of a larger box is proven of the task.
+void take_proofs(std::span<JointBoxResult> results, std::uint32_t own) noexcept {
+    for (std::uint32_t i = 0; i < own; ++i) {
+        JointBoxResult& wider = results[i + own];
+        if (wider.proof == JointBoxProof::proven) {
+            const std::uint32_t queries = results[i].queries + wider.queries;
+            wider.queries = 0;  // they count once
+            results[i] = wider;
+            results[i].queries = queries;
+        }
+    }
+}
+
 }  // namespace
 
 std::optional<StagedProver> StagedProver::create(const Machine& machine, std::uint32_t tasks,
@@ -212,9 +225,9 @@ bool StagedProver::run_first(const Engine& engine, std::span<const JointBoxTask>
 }
 
 /// The first stage is over: what it proved of a larger box it proved of the task, and what it did
-/// not is not asked again. Returns how many stay open.
+/// not is not asked again, unless no task is open. Returns how many stay open.
 std::uint32_t StagedProver::take_wider(std::span<JointBoxResult> results, std::uint32_t own,
-                                       std::uint32_t open) const noexcept {
+                                       std::uint32_t open, bool halves_wider) const noexcept {
     for (const BoxItem& item : items_.first(open)) {
         if (item.task >= own) {
             results[item.task].proof = JointBoxProof::budget_spent;
@@ -227,11 +240,14 @@ std::uint32_t StagedProver::take_wider(std::span<JointBoxResult> results, std::u
             items_[kept++] = items_[i];
         }
     }
-    for (std::uint32_t i = 0; i < own; ++i) {
-        if (results[i + own].proof == JointBoxProof::proven) {
-            const std::uint32_t queries = results[i].queries;
-            results[i] = results[i + own];
-            results[i].queries += queries;
+    take_proofs(results, own);
+    if (!halves_wider || kept != 0) {
+        return kept;
+    }
+    for (std::uint32_t i = 0; i < open; ++i) {  // all of them are larger boxes
+        if (items_[i].task >= own) {
+            results[items_[i].task].proof = JointBoxProof::proven;  // until it is left open
+            items_[kept++] = items_[i];
         }
     }
     return kept;
@@ -286,7 +302,8 @@ std::uint32_t StagedProver::leave_open(std::span<JointBoxResult> results,
 }
 
 StagedWork StagedProver::prove(const Engine& engine, std::span<const JointBoxTask> tasks,
-                               std::span<JointBoxResult> results, bool has_wider) noexcept {
+                               std::span<JointBoxResult> results, bool has_wider,
+                               bool halves_wider) noexcept {
     AXG_ASSERT(results.size() >= tasks.size() && tasks.size() <= group_of_.size());
     AXG_ASSERT(!has_wider || tasks.size() % 2 == 0);
     const auto own = static_cast<std::uint32_t>(has_wider ? tasks.size() / 2 : tasks.size());
@@ -327,7 +344,7 @@ StagedWork StagedProver::prove(const Engine& engine, std::span<const JointBoxTas
             add(work.used, group.used);
         }
         open = leave_open(results, open);
-        open = is_first && has_wider ? take_wider(results, own, open) : open;
+        open = is_first && has_wider ? take_wider(results, own, open, halves_wider) : open;
     }
     for (const BoxItem& item : items_.first(open)) {
         JointBoxResult& result = results[item.task];
@@ -335,6 +352,9 @@ StagedWork StagedProver::prove(const Engine& engine, std::span<const JointBoxTas
             result.proof = JointBoxProof::budget_spent;
             result.open = item.box;
         }
+    }
+    if (has_wider && halves_wider) {
+        take_proofs(results, own);
     }
     return work;
 }

@@ -39,8 +39,11 @@ class StagedProver {
     /// more where `has_wider`.
     /// @param has_wider  the second half of the tasks are those of the first over larger boxes.
     ///     Each is queried whole, once, in the first stage; proven, it is the first one's proof too
+    /// @param halves_wider  where the first stage leaves none of the first half open, the larger
+    ///     boxes that it leaves open have the stages behind it, with the same bounds
     StagedWork prove(const Engine& engine, std::span<const JointBoxTask> tasks,
-                     std::span<JointBoxResult> results, bool has_wider = false) noexcept;
+                     std::span<JointBoxResult> results, bool has_wider = false,
+                     bool halves_wider = false) noexcept;
 
     [[nodiscard]] std::size_t memory_bytes() const noexcept { return arena_.size(); }
 
@@ -67,7 +70,7 @@ class StagedProver {
     [[nodiscard]] bool run_first(const Engine& engine, std::span<const JointBoxTask> tasks,
                                  std::uint32_t own, StagedWork& work) noexcept;
     [[nodiscard]] std::uint32_t take_wider(std::span<JointBoxResult> results, std::uint32_t own,
-                                           std::uint32_t open) const noexcept;
+                                           std::uint32_t open, bool halves_wider) const noexcept;
     void cover(std::span<JointBoxResult> results) noexcept;
     std::uint32_t leave_open(std::span<JointBoxResult> results, std::uint32_t roots) noexcept;
 

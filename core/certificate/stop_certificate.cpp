@@ -56,7 +56,8 @@ StopCertificate::StopCertificate(const Machine& machine, const StopOptions& opti
       arena_(std::move(arena)) {
     stride_ = history_stride(machine.can.sample_us * 1e-6);
     samples_ = machine.can.permit_samples.least;
-    samples_try_ = samples_next_ = machine.can.permit_samples.most;
+    samples_try_ = samples_next_ =
+        keeps_cap() ? samples_work(machine.can.permit_samples) : machine.can.permit_samples.most;
     limit_rules_ = limit_rules(machine, options_.count);
     speed_bound_.fill(std::numeric_limits<double>::infinity());
 }
@@ -200,6 +201,12 @@ void StopCertificate::bound_speeds(std::span<const double> speeds) noexcept {
     std::copy(speeds.begin(), speeds.end(), speed_bound_.begin());
 }
 
+void StopCertificate::ask_raise(std::span<const double> speeds) noexcept {
+    AXG_ASSERT(keeps_cap() && speeds.size() == machine_->axes.size());
+    std::copy(speeds.begin(), speeds.end(), raised_bound_.begin());
+    asks_raise_ = true;
+}
+
 void StopCertificate::note_path(const PathPoints& points) noexcept {
     if (path_ && !path_->note_path(points)) {
         took_back_ = true;
@@ -225,12 +232,17 @@ AxisLimits StopCertificate::bounded_limits(std::uint32_t axis) const noexcept {
 }
 
 JointBox StopCertificate::reach(std::uint32_t samples) const noexcept {
+    return reach_within(samples, speed_bound_);
+}
+
+JointBox StopCertificate::reach_within(std::uint32_t samples,
+                                       const std::array<double, kAxesMax>& bounds) const noexcept {
     const double free_s = free_seconds(*machine_, samples);
     JointBox box;
     for (std::uint32_t i = 0; i < machine_->axes.size(); ++i) {
-        put_reach(
-            axis_reach(*machine_, i, bounded_limits(i), now(i), free_s, errors_of(i).position), i,
-            box);
+        AxisLimits limits = stop_limits(*machine_, i);
+        limits.speed_max = std::min(limits.speed_max, bounds[i]);
+        put_reach(axis_reach(*machine_, i, limits, now(i), free_s, errors_of(i).position), i, box);
     }
     return box;
 }
@@ -386,7 +398,8 @@ bool StopCertificate::bound_path(double free_s) noexcept {
 }
 
 /// What is queried, with a permit that is valid for so many samples. False: too little is known.
-bool StopCertificate::bound_box(std::uint32_t samples) noexcept {
+bool StopCertificate::bound_box(std::uint32_t samples,
+                                const std::array<double, kAxesMax>& bounds) noexcept {
     queried_pieces_ = {};
     if (jog_.is_on()) {
         is_path_known_ = false;
@@ -401,7 +414,7 @@ bool StopCertificate::bound_box(std::uint32_t samples) noexcept {
         box_ = {.centre = snapshot_.position, .half = {}};
         return false;
     }
-    box_ = reach(samples);
+    box_ = reach_within(samples, bounds);
     return history_.count > 1;  // one snapshot says nothing about speed
 }
 
@@ -435,16 +448,19 @@ void StopCertificate::take_wider() noexcept {
         }
     }
     const PermitSamples range = machine_->can.permit_samples;
+    is_longer_proven_ = are_all_proven;
     samples_ = are_all_proven ? samples_try_ : range.least;
-    samples_next_ =
-        are_all_proven ? samples_above(range, samples_try_) : samples_below(range, samples_try_);
+    if (!keeps_cap()) {
+        samples_next_ = are_all_proven ? samples_above(range, samples_try_)
+                                       : samples_below(range, samples_try_);
+    }
 }
 
 void StopCertificate::prove(const Engine& engine,
                             const ContainmentTest& containment_test) noexcept {
     proof_count_ = containment_tests_ = 0;
     work_ = {};
-    is_path_known_ = false;
+    is_path_known_ = is_longer_proven_ = false;
     const PermitSamples range = machine_->can.permit_samples;
     samples_ = range.least;
     samples_next_ = samples_try_;
@@ -459,10 +475,11 @@ void StopCertificate::prove(const Engine& engine,
     if (status_ != SnapshotStatus::ok) {
         return;
     }
-    has_wider_ = tries_longer(range) && bound_box(samples_try_);
+    has_wider_ =
+        tries_longer(range) && bound_box(samples_try_, asks_raise_ ? raised_bound_ : speed_bound_);
     const bool is_wider_path = is_path_known_;
     wider_box_ = box_;
-    bool is_known = bound_box(range.least);
+    bool is_known = bound_box(range.least, speed_bound_);
     has_wider_ = has_wider_ && is_wider_path == is_path_known_;
     list_tasks();
     if (jog_.is_on()) {
@@ -478,7 +495,8 @@ void StopCertificate::prove(const Engine& engine,
         task.pieces = {};
     }
     const std::uint32_t asked = has_wider_ ? 2 * proven : proven;
-    work_ = prover_.prove(engine, tasks_.first(asked), results_.first(asked), has_wider_);
+    work_ =
+        prover_.prove(engine, tasks_.first(asked), results_.first(asked), has_wider_, keeps_cap());
     if (has_wider_) {
         take_wider();
     }
@@ -542,6 +560,7 @@ void StopCertificate::test_containment(const ContainmentTest& containment_test) 
 
 void StopCertificate::keep() noexcept {
     is_limit_judged_ = true;
+    asks_raise_ = false;
     samples_try_ = samples_next_;
     std::uint32_t next = 0;
     for (std::uint32_t i = 0; i < slot_count_; ++i) {

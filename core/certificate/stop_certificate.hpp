@@ -57,8 +57,10 @@ struct StopCycle {
     // the path is known as far as a stop may need it.
     bool is_settled = false;
     std::uint8_t samples = 0;  // n: all of it is proven of a permit that is valid for so many
-    bool is_jog = false;       // proven of the jog that the board reports, and of nothing else
-    bool is_moving = false;    // the board says that its axes move
+    // The longer permit that was tried is, with the bounds of ask_raise where that was called.
+    bool is_longer_proven = false;
+    bool is_jog = false;     // proven of the jog that the board reports, and of nothing else
+    bool is_moving = false;  // the board says that its axes move
     std::span<const PairProof> proofs{};
     LimitFact limit{};  // for left_limits
 };
@@ -83,6 +85,10 @@ class StopCertificate {
     /// @param speeds  [axes] mm/s or rad/s, 0 or more; beyond the largest it bounds nothing
     void bound_speeds(std::span<const double> speeds) noexcept;
 
+    /// The longer permit of the next `prove` is tried with these bounds, which are no lower:
+    /// whether a cap may be raised. Machines with GuardRules::cap alone.
+    void ask_raise(std::span<const double> speeds) noexcept;
+
     /// Bounds where the axes can get, and runs the queries. The same for the same snapshots, until
     /// `keep`. Cost: at most the plan, and a containment test for each pair whose position has left
     /// the box that was proven last; where a jog begins, the lists of two stages once more, for a
@@ -103,6 +109,7 @@ class StopCertificate {
                 .is_settled = is_path_known_ || jog_.is_on() ||
                               (!keeps_path() && !has_left_path_ && history_.count == kSamplesKept),
                 .samples = samples_,
+                .is_longer_proven = is_longer_proven_,
                 .is_jog = jog_.is_on(),
                 .is_moving = snapshot_.mode == kModeMoving,
                 .proofs = proofs_.first(proof_count_),
@@ -172,7 +179,13 @@ class StopCertificate {
     [[nodiscard]] double floor_before(const Slot& slot) const noexcept;
     [[nodiscard]] bool is_in(const JointBox& box, const JointPath& path) const noexcept;
     void list_tasks() noexcept;
-    [[nodiscard]] bool bound_box(std::uint32_t samples) noexcept;
+    [[nodiscard]] JointBox reach_within(std::uint32_t samples,
+                                        const std::array<double, kAxesMax>& bounds) const noexcept;
+    [[nodiscard]] bool bound_box(std::uint32_t samples,
+                                 const std::array<double, kAxesMax>& bounds) noexcept;
+    [[nodiscard]] bool keeps_cap() const noexcept {
+        return machine_->guard.cap != CapPromise::none;
+    }
     [[nodiscard]] bool bound_path(double free_s) noexcept;
     void take_wider() noexcept;
     [[nodiscard]] bool is_inside_proven(const Slot& slot) const noexcept;
@@ -199,7 +212,9 @@ class StopCertificate {
     std::uint32_t slot_count_ = 0, proof_count_ = 0;
 
     AxisSnapshot snapshot_;
-    std::array<double, kAxesMax> speed_bound_{};
+    std::array<double, kAxesMax> speed_bound_{}, raised_bound_{};
+    bool asks_raise_ = false;        // until `keep`
+    bool is_longer_proven_ = false;  // by the last `prove`
     MotionHistory history_;
     LimitRules limit_rules_;
     LimitWatch limit_watch_;

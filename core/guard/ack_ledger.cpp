@@ -68,11 +68,36 @@ AckedCaps AckLedger::note_ack(std::optional<std::uint8_t> nibble) noexcept {
     return acked;
 }
 
-AckedCaps AckLedger::note_recent_ack(std::optional<std::uint8_t> nibble) noexcept {
-    if (newest_ != 0) {
-        oldest_ = std::max(oldest_, newest_ - (kNibbles - 1));
+AckedCaps AckLedger::note_recent_ack(std::optional<std::uint8_t> nibble,
+                                     std::uint64_t lost) noexcept {
+    const std::uint64_t back = kNibbles - 1 + lost;
+    if (newest_ > back) {
+        oldest_ = std::max(oldest_, newest_ - back);
     }
     return note_ack(nibble);
+}
+
+AxisCaps AckLedger::highest_from(std::uint64_t number) const noexcept {
+    if (number < first_ || newest_ - number >= kKept) {
+        return rapid_caps();
+    }
+    AxisCaps caps{};
+    for (std::uint64_t at = number; at <= newest_; ++at) {
+        caps = higher_caps(caps, kept_[at % kKept]);
+    }
+    return caps;
+}
+
+CapFacts AckLedger::note_sample(std::optional<std::uint8_t> nibble, std::uint64_t lost) noexcept {
+    const bool is_same = nibble && last_ == nibble;
+    const AckedCaps acked = is_same ? note_ack(nibble) : note_recent_ack(nibble, lost);
+    last_ = nibble;
+    const bool is_known = acked.status == AckStatus::known;
+    named_[samples_++ % kSamples] = is_known ? oldest_ : 0;
+    const std::uint64_t oldest = *std::min_element(named_.begin(), named_.end());
+    return {.status = acked.status,
+            .acked = is_known ? acked.caps : rapid_caps(),
+            .since = oldest == 0 ? rapid_caps() : highest_from(oldest)};
 }
 
 }  // namespace axg

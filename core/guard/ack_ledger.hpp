@@ -39,6 +39,15 @@ struct AckedCaps {
     AxisCaps caps = rapid_caps();
 };
 
+/// What is known with a sample of the caps that its board keeps.
+struct CapFacts {
+    AckStatus status = AckStatus::none;
+    AxisCaps acked = rapid_caps();
+    // The highest that it can have kept since 16 samples before: of every permit from the one that
+    // was named then on. A sample that names none lets every axis run at rapid.
+    AxisCaps since = rapid_caps();
+};
+
 class AckLedger {
   public:
     /// A new session: no permit of before is ever named.
@@ -50,22 +59,33 @@ class AckLedger {
     /// Precondition: below 16.
     [[nodiscard]] AckedCaps note_ack(std::optional<std::uint8_t> nibble) noexcept;
     /// The same of a board that names a permit for one of its last 16 samples or none, with one
-    /// permit a sample at most: what the bits mean is then known, and no slow-down leaves the
-    /// ledger behind. No rule of docs/reference/board.md asks a board for that yet.
-    [[nodiscard]] AckedCaps note_recent_ack(std::optional<std::uint8_t> nibble) noexcept;
+    /// permit a sample at most: what the bits mean is then known.
+    /// @param lost  samples before this one that were not heard: it may be older by so many
+    [[nodiscard]] AckedCaps note_recent_ack(std::optional<std::uint8_t> nibble,
+                                            std::uint64_t lost = 0) noexcept;
+    /// Once a sample, of a board that names such a permit first, and may go on naming it however
+    /// long it slows down; with what follows from the 16 samples before it. Source:
+    /// docs/reference/board.md, rule (i).
+    [[nodiscard]] CapFacts note_sample(std::optional<std::uint8_t> nibble,
+                                       std::uint64_t lost = 0) noexcept;
 
     /// So many permits were sent after the oldest one that the last ack may mean.
     [[nodiscard]] std::uint64_t behind() const noexcept { return newest_ - oldest_; }
 
   private:
-    static constexpr std::uint64_t kNibbles = 16, kKept = 256;
+    static constexpr std::uint64_t kNibbles = 16, kKept = 256, kSamples = 17;
+
+    [[nodiscard]] AxisCaps highest_from(std::uint64_t number) const noexcept;
 
     std::array<AxisCaps, kKept> kept_{};          // the newest permits, by their number
     std::array<AxisCaps, kNibbles> forgotten_{};  // the highest caps of those before, by nibble
     std::array<std::uint64_t, kNibbles> forgotten_last_{};  // the newest of each
     // Numbers from kKept on, so that they agree with the live counter; 0: none was sent.
     std::uint64_t newest_ = 0, first_ = 0;
-    std::uint64_t oldest_ = 0;  // that the last ack may mean
+    std::uint64_t oldest_ = 0;                     // that the last ack may mean
+    std::array<std::uint64_t, kSamples> named_{};  // the same of the last samples; 0: none
+    std::uint64_t samples_ = 0;
+    std::optional<std::uint8_t> last_{};  // what the last sample named
 };
 
 }  // namespace axg

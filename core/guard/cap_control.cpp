@@ -25,6 +25,14 @@ bool CapControl::has_room(std::uint8_t wanted) const noexcept {
     return wanted == kCapRapid || 8U * wanted >= 9U * order_.cap;
 }
 
+bool CapControl::asks_raise(std::int64_t sample_us) const noexcept {
+    const auto is_over = [sample_us](std::int64_t since_us) {
+        return since_us == INT64_MIN || sample_us - since_us >= kCapRaiseUs;
+    };
+    return promise_ != CapPromise::none && order_.cap < kCapRapid && has_room_ &&
+           sample_us - room_since_us_ >= kCapRoomUs && is_over(raised_us_) && is_over(asked_us_);
+}
+
 /// The mask takes another axis. False: it has all of them.
 bool CapControl::bind_one_more(const CapCycle& cycle) noexcept {
     constexpr std::uint32_t kLastBit = 7;
@@ -82,6 +90,7 @@ CapOrder CapControl::update(const CapCycle& cycle) noexcept {
         fall(cycle);
         return order_;
     }
+    asked_us_ = cycle.is_raise_asked ? cycle.sample_us : asked_us_;
     const bool had_room = has_room_;
     has_room_ = cycle.is_proven && has_room(cycle.wanted);
     if (!had_room) {

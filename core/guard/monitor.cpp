@@ -121,7 +121,7 @@ void prove(const StopCycle& cycle, CycleResult& result) noexcept {
 bool may_be_withheld(StopReason reason) noexcept {
     return reason == StopReason::predicted || reason == StopReason::left_path ||
            reason == StopReason::left_jog || reason == StopReason::left_travel ||
-           reason == StopReason::left_limits;
+           reason == StopReason::left_limits;  // left_cap is of an armed guard alone
 }
 
 }  // namespace
@@ -156,6 +156,22 @@ const char* to_text(StopReason reason) noexcept {
             return "left_travel";
         case StopReason::left_limits:
             return "left_limits";
+        case StopReason::left_cap:
+            return "left_cap";
+    }
+    return "unknown";
+}
+
+const char* to_text(CapBreak kind) noexcept {
+    switch (kind) {
+        case CapBreak::none:
+            return "none";
+        case CapBreak::too_fast:
+            return "too_fast";
+        case CapBreak::not_acknowledged:
+            return "not_acknowledged";
+        case CapBreak::unknown_permit:
+            return "unknown_permit";
     }
     return "unknown";
 }

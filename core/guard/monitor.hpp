@@ -11,6 +11,7 @@
 #include "core/collision/containment.hpp"
 #include "core/collision/engine.hpp"
 #include "core/guard/advisories.hpp"
+#include "core/guard/cap_control.hpp"
 
 namespace axg {
 
@@ -29,8 +30,22 @@ enum class StopReason : std::uint8_t {
     left_jog,      // the axes did not keep to the jog that the board reports
     left_travel,   // the axes are beyond the travel that the model was reduced for
     left_limits,   // an axis broke a declared limit: CycleResult::limit
+    left_cap,      // the board does not keep a cap that it acknowledged: CycleResult::cap_fact
 };
 [[nodiscard]] const char* to_text(StopReason reason) noexcept;
+
+/// How a board breaks its promise to keep a cap (docs/reference/board.md, "The cap").
+enum class CapBreak : std::uint8_t {
+    none = 0,
+    too_fast,          // an axis came farther than any cap in force allows
+    not_acknowledged,  // an order to slow down, for longer than the machine file gives it
+    unknown_permit,    // the sample names a permit that was not sent
+};
+[[nodiscard]] const char* to_text(CapBreak kind) noexcept;
+struct CapFact {
+    CapBreak kind = CapBreak::none;
+    std::uint32_t axis = kNoIndex;  // too_fast
+};
 
 /// Zeroed memory has no permit.
 struct CycleResult {
@@ -43,7 +58,11 @@ struct CycleResult {
     std::uint16_t known_answer_signature = 0;
     std::uint8_t samples = 0;  // n of the permit: what was proven holds for one that is so long
     LimitFact limit{};         // for left_limits
-    bool is_jog = false;      // proven of one axis that moves one way: the permit is for that alone
+    bool is_jog = false;  // proven of one axis that moves one way: the permit is for that alone
+    // Where the board keeps caps: the one that the permit orders, which was proven with it.
+    bool has_cap = false, is_held = false;  // held: for so long that a person has to be told
+    CapOrder cap_order{};
+    CapFact cap_fact{};       // for left_cap
     Advisories advisories{};  // not of judge: whoever drives the chain adds them
 };
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/base/assert.hpp"
+#include "core/certificate/permit_ladder.hpp"
 #include "core/machine/cycle_plan.hpp"
 
 namespace axg {
@@ -94,7 +95,9 @@ AxisRanges ranges_of(const Machine& machine, const StopCertificate& certificate)
 
 JointBox capped_box(const Machine& machine, const AxisRanges& ranges, double share,
                     bool is_enforced) noexcept {
-    const double free_s = free_seconds(machine, machine.can.permit_samples.least);
+    const PermitSamples samples = machine.can.permit_samples;
+    const double free_s =
+        free_seconds(machine, is_enforced ? samples_work(samples) : samples.least);
     const double lead_s = cap_lead_seconds(machine);
     JointBox box;
     for (std::uint32_t i = 0; i < machine.axes.size(); ++i) {
@@ -179,8 +182,8 @@ void SpeedAdvisory::update(const Engine& engine, const StopCertificate& certific
     const std::uint32_t last = cap_;
     cap_ = 0;
     const StopCycle cycle = certificate.cycle();
-    if (cycle.status == SnapshotStatus::ok && cycle.is_settled && !cycle.is_jog &&
-        certificate.tasks().size() <= queries) {
+    is_known_ = cycle.status == SnapshotStatus::ok && cycle.is_settled && !cycle.is_jog;
+    if (is_known_ && certificate.tasks().size() <= queries) {
         cap_ = search(engine, certificate, last, queries);
     }
 }

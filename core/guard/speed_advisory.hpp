@@ -49,6 +49,8 @@ class SpeedAdvisory {
 
     /// 1/250 of rapid; 0: no feed is proven, or nothing is known.
     [[nodiscard]] std::uint8_t cap() const noexcept { return cap_; }
+    /// Something is: the certificate was settled, and no jog is on.
+    [[nodiscard]] bool is_known() const noexcept { return is_known_; }
     [[nodiscard]] std::uint32_t queries() const noexcept { return queries_count_; }
 
     [[nodiscard]] std::size_t memory_bytes() const noexcept {
@@ -75,7 +77,7 @@ class SpeedAdvisory {
     std::span<std::uint32_t> open_;  // pairs that the fastest feed leaves unproven
     std::uint32_t queries_count_ = 0;
     std::uint8_t cap_ = 0;
-    bool is_enforced_ = false;
+    bool is_enforced_ = false, is_known_ = false;
 };
 
 }  // namespace axg

@@ -196,6 +196,11 @@ enum class StopReversal : std::uint8_t {
 /// Whether a board keeps its axes within the cap of a permit. all_axes: one that can only scale its
 /// whole motion.
 enum class CapPromise : std::uint8_t { none = 0, all_axes, per_axis };
+[[nodiscard]] constexpr const char* to_text(CapPromise promise) noexcept {
+    return promise == CapPromise::all_axes   ? "all_axes"
+           : promise == CapPromise::per_axis ? "per_axis"
+                                             : "none";
+}
 
 /// single_jog: while the board reports a jog, only one axis is commanded to move, one way, within
 /// these, whatever the axis could do.
@@ -220,8 +225,9 @@ struct GuardRules {
     // travel.
     bool travel_proofs = false;
     double overrun_mm = 2, overrun_rad = 0.5 * 0x1.1df46a2529d39p-6;  // 0.5 degrees
-    bool speed_cap = false;     // the permit carries one (docs/theory/certificate.md)
-    double cap_lead_s = 20e-3;  // from a sample until the board makes use of its cap
+    bool speed_cap = false;             // the permit carries one (docs/theory/certificate.md)
+    CapPromise cap = CapPromise::none;  // the board keeps the one of the permit, and proofs use it
+    double cap_lead_s = 20e-3;          // from a sample until the board makes use of its cap
     // A clearance level becomes better this far beyond it, for so many samples in a row.
     double level_band_mm = 0.5;
     std::uint32_t level_hold_samples = 50;

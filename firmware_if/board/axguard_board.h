@@ -185,8 +185,10 @@ typedef struct axg_board {
     axg_board_permit ordered;  // the newest usable permit: target of the caps
     bool is_newest_counted;    // they are the same permit
     axg_board_permit acked;
-    axg_board_caps keeps;  // u
-    uint64_t keeps_us;     // of the last call of axg_board_keeps
+    uint32_t acked_sample;  // it is for this one
+    bool is_acked_named;    // by a sample
+    axg_board_caps keeps;   // u
+    uint64_t keeps_us;      // of the last call of axg_board_keeps
 
     bool moves;
     bool has_moved;

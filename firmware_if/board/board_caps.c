@@ -30,11 +30,31 @@ bool axg_board_is_below(const axg_board_caps* lower, const axg_board_caps* upper
     return is_below;
 }
 
+// A permit is named first by one of the 15 samples after its own: the low bits of an older one
+// would pass for a newer one's. It may then be named for as long as the axes slow down.
+static bool axg_board_may_name(const axg_board* board, const axg_board_record* record) {
+    const uint32_t age =
+        axg_board_samples_from(board->acked_sample, axg_board_number_of(&record->sample));
+    return (board->options.cap_kind == AXG_BOARD_CAP_ENFORCED) && board->acked.is_given &&
+           (board->is_acked_named || (age < AXG_BOARD_RECORDS));
+}
+
+// The newest usable permit.
+static void axg_board_take_ack(axg_board* board, const axg_board_permit* permit) {
+    if (!board->acked.is_given || (board->acked_sample != board->used_sample) ||
+        (board->acked.live != permit->live)) {
+        board->is_acked_named = false;
+    }
+    board->acked = *permit;
+    board->acked_sample = board->used_sample;
+}
+
 void axg_board_open_record(axg_board* board, axg_board_record* record) {
     // Between a stamp and this call a bound may have fallen: then what it was is not known.
     const bool is_known = record->sample.latched_us >= board->keeps_us;
     record->highest = is_known ? board->keeps : axg_board_equal_caps((uint8_t)AXG_BOARD_CAP_NONE);
-    record->has_ack = (board->options.cap_kind == AXG_BOARD_CAP_ENFORCED) && board->acked.is_given;
+    record->has_ack = axg_board_may_name(board, record);
+    board->is_acked_named = record->has_ack;
     record->acked =
         record->has_ack ? board->acked.caps : axg_board_equal_caps((uint8_t)AXG_BOARD_CAP_NONE);
     record->ack = record->has_ack ? (uint8_t)(board->acked.live & 15U) : 0U;
@@ -52,7 +72,7 @@ bool axg_board_is_covered(const axg_board_record* record, const axg_board_caps* 
 
 void axg_board_acknowledge(axg_board* board) {
     if (board->ordered.is_given && axg_board_is_below(&board->keeps, &board->ordered.caps)) {
-        board->acked = board->ordered;  // the newest, so the samples never name an older one
+        axg_board_take_ack(board, &board->ordered);  // so the samples never name an older one
     }
 }
 
@@ -71,7 +91,7 @@ static void axg_board_raise(axg_board* board, uint32_t group, uint8_t cap) {
         uint8_t* const highest = &board->records[i].highest.of[group];
         *highest = (cap > *highest) ? cap : *highest;
     }
-    board->acked = board->last;  // at once: the one before orders less than is kept now
+    axg_board_take_ack(board, &board->last);  // at once: the one before orders less than is kept
 }
 
 axg_board_caps axg_board_keeps(axg_board* board, const axg_board_caps* wanted, uint64_t now_us) {

@@ -189,6 +189,9 @@ void write(Writer& out, const LiveQuery& query) noexcept {
     for (std::uint32_t i = 0; i < axes; ++i) {
         out.integer(std::bit_cast<std::uint64_t>(snapshot.position[i]), 8);
     }
+    out.tag(query.caps.status);
+    out.bytes(std::span(query.caps.acked).first(axes));
+    out.bytes(std::span(query.caps.since).first(axes));
 }
 void read(Reader& in, LiveQuery& query) noexcept {
     ReceiverEvent& event = query.event;
@@ -217,6 +220,9 @@ void read(Reader& in, LiveQuery& query) noexcept {
     for (std::uint32_t i = 0; i < snapshot.axis_count; ++i) {
         snapshot.position[i] = std::bit_cast<double>(in.integer(8));
     }
+    query.caps.status = in.tag(AckStatus::known);
+    in.bytes(std::span(query.caps.acked).first(snapshot.axis_count));
+    in.bytes(std::span(query.caps.since).first(snapshot.axis_count));
 }
 
 /// What the result permits; each is a word of its own on the bus.
@@ -242,6 +248,12 @@ void write(Writer& out, const LiveResult& live_result) noexcept {
     out.integer(live_result.result.not_proven, 4);
     out.integer(live_result.result.known_answer_signature, 2);
     out.integer(live_result.result.samples, 1);
+    out.integer(live_result.result.has_cap ? 1 : 0, 1);
+    out.integer(live_result.result.is_held ? 1 : 0, 1);
+    out.integer(live_result.result.cap_order.cap, 1);
+    out.integer(live_result.result.cap_order.mask, 1);
+    out.tag(live_result.result.cap_fact.kind);
+    out.integer(live_result.result.cap_fact.axis, 4);
     out.integer(live_result.sync_counter, 1);
     out.time(live_result.latched_us);
     out.time(live_result.arrived_us);
@@ -258,11 +270,17 @@ void read(Reader& in, LiveResult& live_result) noexcept {
     live_result.result.has_permit = permitted != Permitted::nothing;
     live_result.result.is_jog = permitted == Permitted::jog;
     live_result.result.is_stop = in.boolean();
-    live_result.result.reason = in.tag(StopReason::left_limits);
+    live_result.result.reason = in.tag(StopReason::left_cap);
     live_result.result.pair = in.word();
     live_result.result.not_proven = in.word();
     live_result.result.known_answer_signature = static_cast<std::uint16_t>(in.integer(2));
     live_result.result.samples = in.byte();
+    live_result.result.has_cap = in.boolean();
+    live_result.result.is_held = in.boolean();
+    live_result.result.cap_order.cap = in.byte();
+    live_result.result.cap_order.mask = in.byte();
+    live_result.result.cap_fact.kind = in.tag(CapBreak::unknown_permit);
+    live_result.result.cap_fact.axis = in.word();
     live_result.sync_counter = in.byte();
     live_result.latched_us = in.time();
     live_result.arrived_us = in.time();
@@ -289,7 +307,7 @@ void read(Reader& in, LiveNote& note) noexcept {
     note.kind = in.tag(LiveNote::Kind::person);
     note.phase = in.tag(GuardPhase::armed);
     note.cause = in.tag(kGuardFaultLast);
-    note.reason = in.tag(StopReason::left_limits);
+    note.reason = in.tag(StopReason::left_cap);
     note.pair = in.word();
     note.fault = in.tag(static_cast<ReceiverFault>(kReceiverFaults - 1));
     note.frame_id = in.word();

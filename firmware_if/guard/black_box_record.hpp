@@ -64,7 +64,7 @@ struct BlackBoxHeader {
 
 inline constexpr std::array<std::uint8_t, 8> kBlackBoxMagic{'A', 'X', 'G',  'B',
                                                             'O', 'X', 0x1A, '\n'};
-inline constexpr std::uint8_t kBlackBoxVersion = 7;
+inline constexpr std::uint8_t kBlackBoxVersion = 8;
 inline constexpr std::size_t kBlackBoxHeaderBytes = 172;
 inline constexpr std::size_t kBlackBoxRecordBytesMin = 20;  // without content
 inline constexpr std::size_t kBlackBoxRecordBytesMax = 320;

@@ -11,14 +11,25 @@ GuardChain::GuardChain(const Machine& machine, Engine engine,
       containment_test_(containment_test),
       stop_certificate_(stop_certificate),
       speed_advisory_(stop_certificate == nullptr ? nullptr : speed_advisory),
-      margin_advisory_(margin_advisory) {}
+      margin_advisory_(margin_advisory),
+      cap_guard_(machine) {}
 
-void GuardChain::take(const ReceiverEvent& event) noexcept {
+void GuardChain::note_caps(const CapFacts& caps, bool is_first) noexcept {
+    std::array<double, kAxesMax> errors{};
+    for (std::uint32_t i = 0; i < machine_.axes.size(); ++i) {
+        errors[i] = stop_certificate_->held_error(i);
+    }
+    cap_guard_.note(snapshot_, caps, is_first, errors);
+}
+
+void GuardChain::take(const ReceiverEvent& event, const CapFacts& caps) noexcept {
     if (event.kind == ReceiverEvent::Kind::snapshot) {
         snapshot_ = event.snapshot;
         if (stop_certificate_ != nullptr) {
             // Before VALID the receiver may begin anew, and samples are then counted by the clock.
-            stop_certificate_->note(snapshot_, event.state != ReceiverState::valid);
+            const bool is_first = event.state != ReceiverState::valid;
+            stop_certificate_->note(snapshot_, is_first);
+            note_caps(caps, is_first);
         }
     } else if (event.kind == ReceiverEvent::Kind::look_ahead && stop_certificate_ != nullptr) {
         stop_certificate_->note_path(event.look_ahead);
@@ -27,6 +38,7 @@ void GuardChain::take(const ReceiverEvent& event) noexcept {
 
 void GuardChain::evaluate(const EvaluationClock& clock) {
     if (stop_certificate_ != nullptr) {
+        cap_guard_.bound(*stop_certificate_);
         stop_certificate_->prove(engine_, containment_test_);
         return;
     }
@@ -75,6 +87,11 @@ CycleResult GuardChain::decide(bool ready, bool is_armed) noexcept {
     }
     if (speed_advisory_ != nullptr) {
         result.advisories.speed_cap = speed_advisory_->cap();
+    }
+    if (stop_certificate_ != nullptr && cap_guard_.is_on()) {
+        const bool is_known = speed_advisory_ != nullptr && speed_advisory_->is_known();
+        cap_guard_.judge(stop_certificate_->cycle(),
+                         is_known ? &result.advisories.speed_cap : nullptr, is_armed, result);
     }
     if (margin_advisory_ != nullptr && margin_advisory_->worst() != kNoIndex) {
         const std::uint32_t pair = margin_advisory_->worst();

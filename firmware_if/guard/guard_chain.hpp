@@ -11,6 +11,7 @@
 #include "core/certificate/stop_certificate.hpp"
 #include "core/collision/containment.hpp"
 #include "core/collision/engine.hpp"
+#include "core/guard/cap_guard.hpp"
 #include "core/guard/margin_advisory.hpp"
 #include "core/guard/monitor.hpp"
 #include "core/guard/speed_advisory.hpp"
@@ -44,7 +45,8 @@ class GuardChain {
 
     /// What the receiver made of a frame. A snapshot is kept for the queries, a look-ahead path for
     /// the certificate.
-    void take(const ReceiverEvent& event) noexcept;
+    /// @param caps  with a snapshot, of a board that keeps caps
+    void take(const ReceiverEvent& event, const CapFacts& caps = {}) noexcept;
 
     /// Makes and runs the queries of the last snapshot; the same for the same snapshot, so it may
     /// be repeated.
@@ -58,6 +60,11 @@ class GuardChain {
     /// Queries on for the advisories of the next cycle, with what this one has left. After its
     /// frames have been sent: a permit waits for no advisory.
     void update_advisories() noexcept;
+
+    /// CapGuard::ignore: under a trace.
+    void ignore_caps() noexcept { cap_guard_.ignore(); }
+    /// A recorded order, of a run that this chain joins later.
+    void set_cap_order(const CapOrder& order) noexcept { cap_guard_.set_order(order); }
 
     [[nodiscard]] const Engine& engine() const noexcept { return engine_; }
     [[nodiscard]] const AxisSnapshot& snapshot() const noexcept { return snapshot_; }
@@ -79,6 +86,7 @@ class GuardChain {
     [[nodiscard]] std::span<const std::int64_t> pair_ns() const noexcept;
 
   private:
+    void note_caps(const CapFacts& caps, bool is_first) noexcept;
     void evaluate_together() noexcept;
     void evaluate_in_turn(const EvaluationClock& clock);
     [[nodiscard]] bool is_queried() const noexcept {
@@ -91,6 +99,7 @@ class GuardChain {
     StopCertificate* stop_certificate_;
     SpeedAdvisory* speed_advisory_;
     MarginAdvisory* margin_advisory_;
+    CapGuard cap_guard_;
     AxisSnapshot snapshot_;
     PairQueries pair_queries_;
     std::array<QueryResult, kQueriesMax> results_{};

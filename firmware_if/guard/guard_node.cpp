@@ -97,7 +97,8 @@ GuardNode::GuardNode(const Machine& machine, LiveOptions options, CanTransport& 
 /// Files are read before this object is made: the self-test is what is left.
 void GuardNode::begin(std::int64_t now_us) noexcept {
     on({.kind = GuardEventKind::loaded}, now_us);
-    has_passed_ = false;
+    has_passed_ = is_held_ = false;
+    ledger_.clear();
     logged_ = {};
     withheld_ = {};
     next_log_us_ = next_session_note_us_ = now_us + kLogUs;
@@ -203,6 +204,7 @@ void GuardNode::on_result(const LiveResult& live_result, std::int64_t now_us) no
     const bool was_proven = guard_.is_proven;
     const GuardOutput output = on(event, now_us);
     log_withheld(live_result.result, now_us);
+    note_held(live_result.result, now_us);
     counters_.refused +=
         live_result.result.has_permit && (was_proven || !guard_.is_proven) ? 1U : 0U;
     if (output.sends_permit) {
@@ -274,12 +276,16 @@ void GuardNode::check_standstill(std::int64_t now_us) noexcept {
 
 void GuardNode::submit(LiveQuery::Kind kind, const ReceiverEvent& event,
                        std::int64_t now_us) noexcept {
-    const LiveQuery query{.kind = kind,
-                          .number = submitted_ + 1,
-                          .epoch = epoch_,
-                          .period = guard_.period,
-                          .is_armed = guard_.phase == GuardPhase::armed,
-                          .event = event};
+    const bool has_caps = keeps_cap() && kind == LiveQuery::Kind::snapshot;
+    const LiveQuery query{
+        .kind = kind,
+        .number = submitted_ + 1,
+        .epoch = epoch_,
+        .period = guard_.period,
+        .is_armed = guard_.phase == GuardPhase::armed,
+        .event = event,
+        .caps = has_caps ? ledger_.note_sample(acked_permit(event.snapshot), event.samples_lost)
+                         : CapFacts{}};
     if (!queues_.queries.push(query)) {
         return;  // the engine is so far behind that it is found silent
     }

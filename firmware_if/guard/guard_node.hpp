@@ -148,6 +148,8 @@ class GuardNode {
     void on_result(const LiveResult& live_result, std::int64_t now_us) noexcept;
     void send_permit(const LiveResult& live_result, std::int64_t now_us) noexcept;
     void put_stop_word(std::int64_t now_us) noexcept;
+    [[nodiscard]] bool keeps_cap() const noexcept { return machine_.guard.cap != CapPromise::none; }
+    void note_held(const CycleResult& result, std::int64_t now_us) noexcept;
     [[nodiscard]] bool lacks_session(const LiveResult& live_result, std::int64_t now_us) noexcept;
     void read_frames(std::int64_t now_us) noexcept;
     void on_arrival(const CanArrival& arrival, std::int64_t now_us) noexcept;
@@ -187,6 +189,7 @@ class GuardNode {
     Outbox outbox_;
     Handshake handshake_;
     PeriodClock period_;
+    AckLedger ledger_;  // of a board that keeps caps: what its samples name
     SyncProducer sync_;
     LiveCounters counters_;
 
@@ -215,6 +218,7 @@ class GuardNode {
     std::array<std::int64_t, kHashParts> hash_note_us_{};
     OperatorStatus status_;                   // as it was sent last
     std::int64_t status_us_, status_due_us_;  // then, and the next
+    bool is_held_ = false;                    // and it was said
     bool has_submitted_ = false, is_down_ = false, is_gone_ = false, reads_more_ = false;
     bool has_reported_engine_ = false;
     bool has_passed_ = false;  // the self-test, since begin

@@ -20,6 +20,11 @@ void GuardNode::send_permit(const LiveResult& live_result, std::int64_t now_us) 
         Permit2 answered = permit2_of(live_result.result, live_counter_, echo);
         answered.nonce = session.nonce;
         answered.lap = session.lap;
+        if (keeps_cap()) {  // a jog has none
+            const bool has_cap = answered.word != PermitWord::jog;
+            ledger_.note_sent(live_counter_,
+                              has_cap ? caps_of_permit(answered.cap, answered.mask) : rapid_caps());
+        }
         outbox_.put_permit(encode_permit2(can, answered, now_us));
     } else {
         outbox_.put_permit(encode_permit(can, permit, now_us));
@@ -42,6 +47,18 @@ void GuardNode::put_stop_word(std::int64_t now_us) noexcept {
                                           .nonce = session.nonce,
                                           .lap = session.lap},
                                          now_us));
+}
+
+/// The board waits on its path, with permits and without a stop, for a crawl to be proven. A person
+/// has to know that it may be for ever.
+void GuardNode::note_held(const CycleResult& result, std::int64_t now_us) noexcept {
+    if (result.is_held && !is_held_) {
+        note({.kind = LiveNote::Kind::wire,
+              .words = "held by the cap for 2 s: not even a crawl is proven; jog the axes away, or "
+                       "change the program"},
+             now_us);
+    }
+    is_held_ = result.is_held;
 }
 
 /// A permit of version 2 answers for the board's nonce and the sample's lap: without them it would

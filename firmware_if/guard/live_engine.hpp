@@ -41,7 +41,7 @@ void run_queries(const LiveEngine& live, LiveQueues& queues, Publish&& publish) 
                 live.chain.take(query.event);
                 break;
             case LiveQuery::Kind::snapshot:
-                live.chain.take(query.event);
+                live.chain.take(query.event, query.caps);
                 newest = query;
                 has_snapshot = true;
                 break;

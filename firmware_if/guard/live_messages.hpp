@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "core/guard/ack_ledger.hpp"
 #include "core/guard/guard_state.hpp"
 #include "core/guard/monitor.hpp"
 #include "firmware_if/receiver/axis_receiver.hpp"
@@ -21,6 +22,7 @@ struct LiveQuery {
     std::uint32_t period = 0;  // of the guard, when it was submitted
     bool is_armed = false;     // it was
     ReceiverEvent event;       // snapshot, look_ahead
+    CapFacts caps;             // snapshot, of a board that keeps caps
 };
 
 /// From the engine's thread: of the newest query that it has taken.

@@ -69,6 +69,7 @@ EmergencyCode code_of_verdict(StopReason reason) noexcept {
         case StopReason::left_jog:
         case StopReason::left_travel:
         case StopReason::left_limits:
+        case StopReason::left_cap:
         case StopReason::input:
         case StopReason::none:
             break;

@@ -42,6 +42,10 @@ Permit2 permit2_of(const CycleResult& result, std::uint8_t live_counter,
     // 0 would be hold: a board that obeys it waits where it stands, and for ever.
     permit.cap = std::max<std::uint8_t>(same.speed_cap, 1);
     permit.mask = permit.cap < kPermitCapNone ? kAllAxes : std::uint8_t{0};
+    if (result.has_cap) {  // what was proven with it
+        permit.cap = result.cap_order.cap;
+        permit.mask = result.cap_order.mask;
+    }
     permit.samples = result.samples;
     permit.level = static_cast<std::uint8_t>(
         kClear - static_cast<unsigned>(result.advisories.clearance_level));

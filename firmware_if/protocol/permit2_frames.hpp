@@ -39,8 +39,8 @@ struct Permit2 {
     std::uint16_t lap = 0;     // of the sample that was certified
 };
 
-/// What a judged cycle says, without session, for a board that promises no cap: what the proof
-/// would like is advice for all axes, and never to hold.
+/// What a judged cycle says, without session. For a board that promises no cap what the proof would
+/// like is advice for all axes, and never to hold.
 [[nodiscard]] Permit2 permit2_of(const CycleResult& result, std::uint8_t live_counter,
                                  std::uint8_t sync_counter) noexcept;
 

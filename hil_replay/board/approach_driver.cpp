@@ -18,9 +18,11 @@ double speed_for(const Axis& axis, double distance) noexcept {
 
 /// Whether the axis may do this for a tick: at its end the limits hold, even while the acceleration
 /// returns to zero, and so does the speed where the acceleration passes zero on the way.
-bool is_legal(const Axis& axis, const AxisMotion& now, double jerk, double tick_s) noexcept {
+/// @param fastest  the largest speed, or the one that it keeps
+bool is_legal(const Axis& axis, double fastest, const AxisMotion& now, double jerk,
+              double tick_s) noexcept {
     constexpr double kRounding = 1 + 1e-12;  // a motion may run along its limits
-    const double speed_max = axis.speed_max * kRounding;
+    const double speed_max = fastest * kRounding;
     AxisMotion trial = now;
     trial.jerk = jerk;
     const AxisMotion then = moved_on(trial, tick_s);
@@ -36,18 +38,29 @@ bool is_legal(const Axis& axis, const AxisMotion& now, double jerk, double tick_
     return std::abs(peak) <= speed_max;
 }
 
-/// What is left is what a few ticks of jerk could mend: the axis is held.
+/// What is left of its motion is what a few ticks of jerk could mend.
+bool nearly_stands(const Axis& axis, const AxisMotion& now, double tick_s) noexcept {
+    const double step = axis.jerk_max * tick_s;
+    return std::abs(now.acceleration) <= 2 * step && std::abs(now.speed) <= 2 * step * tick_s;
+}
+
+/// And so is what is left of the way: the axis is held.
 bool has_arrived(const Axis& axis, const AxisMotion& now, double target, double tick_s) noexcept {
     const double step = axis.jerk_max * tick_s;
-    return std::abs(now.acceleration) <= 2 * step && std::abs(now.speed) <= 2 * step * tick_s &&
+    return nearly_stands(axis, now, tick_s) &&
            std::abs(target - now.position) <= 10 * step * tick_s * tick_s;
 }
 
 }  // namespace
 
 double approach_jerk(const Axis& axis, const AxisMotion& now, double target, double speed_share,
-                     double tick_s) noexcept {
+                     double tick_s, double share_kept) noexcept {
     const double j = axis.jerk_max;
+    // An axis that is faster slows down, and gets no faster on the way.
+    const double swing = 0.5 * now.acceleration * std::abs(now.acceleration) / j;
+    const double kept = std::min(
+        axis.speed_max,
+        std::max({share_kept * axis.speed_max, std::abs(now.speed), std::abs(now.speed + swing)}));
     // Where it is, and how fast, once it no longer accelerates towards the target.
     AxisMotion level = now;
     if (now.acceleration * (target - now.position) > 0) {
@@ -62,22 +75,28 @@ double approach_jerk(const Axis& axis, const AxisMotion& now, double target, dou
     const double jerk = std::clamp((acceleration - now.acceleration) / tick_s, -j, j);
     const double none = std::clamp(-now.acceleration / tick_s, -j, j);
     for (const double allowed : {jerk, none}) {
-        if (is_legal(axis, now, allowed, tick_s)) {
+        if (is_legal(axis, kept, now, allowed, tick_s)) {
             return allowed;
         }
     }
     return now.acceleration > 0 ? -j : j;  // keeps the law from wherever it was kept
 }
 
-CommandedMotion make_approach(const Machine& machine, const Approach& approach) {
-    return [&machine, approach](std::span<AxisMotion> axes) {
+CommandedMotion make_approach(const Machine& machine, const Approach& approach,
+                              const double* share) {
+    return [&machine, approach, share](std::span<AxisMotion> axes) {
+        const double most = share != nullptr ? *share : 1;
         for (std::size_t i = 0; i < axes.size(); ++i) {
-            if (has_arrived(machine.axes[i], axes[i], approach.target[i], approach.tick_s)) {
+            const bool is_held =
+                most <= 0 && nearly_stands(machine.axes[i], axes[i], approach.tick_s);
+            if (is_held ||
+                has_arrived(machine.axes[i], axes[i], approach.target[i], approach.tick_s)) {
                 axes[i] = {.position = axes[i].position};
                 continue;
             }
-            axes[i].jerk = approach_jerk(machine.axes[i], axes[i], approach.target[i],
-                                         approach.speed_share[i], approach.tick_s);
+            axes[i].jerk =
+                approach_jerk(machine.axes[i], axes[i], approach.target[i],
+                              std::min(most, approach.speed_share[i]), approach.tick_s, most);
         }
         return MotionTick{.is_over = false, .tool = machine.first_tool};
     };

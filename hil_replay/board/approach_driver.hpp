@@ -19,10 +19,16 @@ struct Approach {
 
 /// Speed, acceleration and jerk keep the axis' limits at every instant, and so would the speed if
 /// the acceleration had to go to zero from there. `machine` must outlive the motion.
-[[nodiscard]] CommandedMotion make_approach(const Machine& machine, const Approach& approach);
+/// @param share  of each axis' largest speed, read at every tick, that it may have at most; null:
+///     all of it
+[[nodiscard]] CommandedMotion make_approach(const Machine& machine, const Approach& approach,
+                                            const double* share = nullptr);
 
 /// The jerk of one axis for the next tick.
+/// @param share_kept  of its largest speed, that it does not exceed even while its acceleration
+///     returns to zero
 [[nodiscard]] double approach_jerk(const Axis& axis, const AxisMotion& now, double target,
-                                   double speed_share, double tick_s) noexcept;
+                                   double speed_share, double tick_s,
+                                   double share_kept = 1) noexcept;
 
 }  // namespace axg

@@ -5,12 +5,17 @@
 #include <cmath>
 #include <utility>
 
+#include "core/guard/advisories.hpp"
+
 namespace axg {
 
 namespace {
 
 constexpr double kSecondsPerUs = 1e-6;
 constexpr double kStandstillCounts = 0.05;  // axes slower than this a sample count as standing
+constexpr std::int64_t kLateUs = 100'000;   // CapFault::late
+constexpr double kCapShare = 0.98;          // of a cap, that it stays below
+constexpr double kCapCounts = 1e-6;         // of 1/250 of rapid: an axis that is slower stands
 constexpr double kOffChangesUs = 5000;      // what an axis is off its path changes in a stop
 
 /// The way that an axis is turned to by the acceleration it has while the jerk takes that away; 0:
@@ -60,11 +65,18 @@ MotionBoard::MotionBoard(const Machine& machine, std::span<const double> start,
       options_(options),
       random_(options.seed),
       encoder_(machine, {.says_session = false}),
-      watch_(machine.can, options.jog.axis != kNoIndex, options.permit_us, options.hashes),
+      watch_(machine.can, options.jog.axis != kNoIndex, options.permit_us, options.hashes,
+             options.speed_share != nullptr ? options.cap : CapPromise::none),
       tool_(options.tool == 0 ? machine.first_tool : options.tool),
       sent_tool_(tool_) {
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
         axes_[i].position = sent_[i] = start[i];
+    }
+    const double period_s = machine.can.sample_us * kSecondsPerUs;
+    shares_.resize(2 + static_cast<std::size_t>(std::ceil(options.cap_smooth_s / period_s)), 0.0);
+    late_shares_.resize(static_cast<std::size_t>(kLateUs / machine.can.sample_us) + 1, 1.0);
+    if (keeps_cap()) {
+        *options_.speed_share = 0;
     }
     if (machine.can.look_ahead_samples == 0) {
         return;
@@ -173,6 +185,55 @@ void MotionBoard::drive(std::int64_t until_us) {
             axes_[i] = moved_on(axes_[i], seconds);
         }
         now_us_ = to_us;
+        note_speeds();
+    }
+}
+
+/// What the fastest axis has, and what a stop that begins now would bring it to: it takes the
+/// acceleration away with the jerk that is guaranteed at least.
+void MotionBoard::note_speeds() noexcept {
+    if (!keeps_cap()) {
+        return;
+    }
+    double fastest = 0;
+    for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
+        const Axis& axis = machine_.axes[i];
+        const double a = axes_[i].acceleration, v = axes_[i].speed;
+        const double more = v * a > 0 ? 0.5 * a * a / axis.jerk_max : 0;
+        fastest = std::max(fastest, (std::abs(v) + more) / axis.speed_max);
+    }
+    fastest_ = std::max(fastest_, fastest);
+    cap_breaches_ += fastest * kSpeedCapRapid > kept_cap_ + kCapCounts ? 1U : 0U;
+}
+
+/// Once a period, between motion and latch. It slows down where that is ordered, and names the
+/// permit when no axis is faster, nor will be by what was commanded; it speeds up when it may.
+void MotionBoard::keep_cap() {
+    if (!keeps_cap()) {
+        return;
+    }
+    const bool is_true = options_.cap_fault == CapFault::none;
+    const std::uint8_t ordered = watch_.ordered_cap(next_us_);
+    const double commanded = *std::max_element(shares_.begin(), shares_.end());
+    const double counts = std::ceil(std::max(fastest_, commanded) * kSpeedCapRapid - kCapCounts);
+    const double least = is_true ? std::clamp(counts, 0.0, double{kSpeedCapRapid}) : 0;
+    const std::uint8_t wanted = std::max(ordered, static_cast<std::uint8_t>(least));
+    kept_cap_ = watch_.keep_cap(wanted, next_us_);
+    double share = kCapShare * std::min(kept_cap_, ordered) / kSpeedCapRapid;
+    late_shares_[late_slot_++ % late_shares_.size()] = share;
+    if (options_.cap_fault == CapFault::late) {
+        share = *std::max_element(late_shares_.begin(), late_shares_.end());
+    } else if (options_.cap_fault == CapFault::half) {
+        share = std::min(1.0, 2 * share);
+    } else if (options_.cap_fault == CapFault::ignores) {
+        share = 1;
+    }
+    share = std::min(share, watch_.is_slow() ? options_.slow_share : 1);
+    shares_[share_slot_++ % shares_.size()] = share;
+    *options_.speed_share = share;
+    fastest_ = 0;
+    if (state_ == BoardState::moving) {
+        note_speeds();
     }
 }
 
@@ -236,6 +297,7 @@ void MotionBoard::advance_part(std::int64_t until_us) {
     }
     if (state_ == BoardState::braking) {
         brake_for(until_us);
+        note_speeds();
         settle(until_us);
     }
     now_us_ = until_us;
@@ -293,6 +355,7 @@ std::span<const CanFrame> MotionBoard::latch_on_sync(std::uint8_t counter, std::
 void MotionBoard::pass_without_sync() {
     begin_if_permitted();
     advance(next_us_);
+    keep_cap();
     set_next_latch();
 }
 
@@ -320,6 +383,7 @@ std::span<const CanFrame> MotionBoard::latch_now(std::uint8_t counter) {
     const std::int64_t look_ahead_us = machine_.can.look_ahead_samples * period_us;
     begin_if_permitted();
     advance(next_us_);
+    keep_cap();
     watch_.on_latch(counter, next_us_);
     PathPoints look_ahead;
     if (path_) {

@@ -10,6 +10,7 @@
 #include <optional>
 #include <random>
 #include <span>
+#include <vector>
 
 #include "core/certificate/jog.hpp"
 #include "core/machine/configuration_hashes.hpp"
@@ -23,6 +24,14 @@ namespace axg {
 
 inline constexpr std::int64_t kBoardStartUs = 1'000'000;  // of the first sample
 
+/// How a board that says that it keeps the cap of the permits keeps it.
+enum class CapFault : std::uint8_t {
+    none = 0,
+    late,     // acknowledges at once, and begins to slow down a tenth of a second later
+    half,     // acknowledges at once, and goes twice as fast
+    ignores,  // acknowledges at once, and goes on as before
+};
+
 struct BoardOptions {
     std::uint64_t seed = 1;
     std::int64_t tick_us = 1000;           // of the commanded motion; divides the sample period
@@ -35,6 +44,13 @@ struct BoardOptions {
     std::uint16_t tool = 0;  // in the spindle at the start; 0: Machine::first_tool
     JogMove jog{};  // it is in jog: one axis, one way, with the permit for that; none: it is not
     ConfigurationHashes hashes{};  // of the machine that it was given
+    // It keeps all axes within the cap of the permits. The motion reads at every tick which share
+    // of their largest speeds they may have, and comes to it within so many seconds of averaging.
+    CapPromise cap = CapPromise::none;
+    double* speed_share = nullptr;  // null: it keeps no cap, whatever is promised
+    double cap_smooth_s = 0;
+    double slow_share = 1;  // under a permit with the word slow
+    CapFault cap_fault = CapFault::none;
 };
 
 enum class BoardState : std::uint8_t {
@@ -109,8 +125,17 @@ class MotionBoard {
     [[nodiscard]] std::uint64_t samples() const noexcept { return sample_; }
     [[nodiscard]] std::int64_t moving_since_us() const noexcept { return moving_since_us_; }
     [[nodiscard]] EncodeResult encode_status() const noexcept { return encoded_; }
+    /// With an enforced cap: what it keeps now, 1/250 of rapid, and in how many ticks and stops it
+    /// was faster.
+    [[nodiscard]] std::uint8_t kept_cap() const noexcept { return kept_cap_; }
+    [[nodiscard]] std::uint64_t cap_breaches() const noexcept { return cap_breaches_; }
 
   private:
+    [[nodiscard]] bool keeps_cap() const noexcept {
+        return options_.cap != CapPromise::none && options_.speed_share != nullptr;
+    }
+    void note_speeds() noexcept;
+    void keep_cap();
     std::span<const CanFrame> latch_now(std::uint8_t counter);
     void begin_if_permitted();
     void set_next_latch();
@@ -155,6 +180,13 @@ class MotionBoard {
     std::int64_t nominal_us_ = kBoardStartUs, next_us_ = kBoardStartUs;
     std::array<double, kAxesMax> sent_{};
     std::uint16_t sent_tool_ = 0;
+
+    std::vector<double> shares_;  // that were commanded, so long as they may act
+    std::size_t share_slot_ = 0, late_slot_ = 0;
+    double fastest_ = 0;  // share of rapid that an axis had or may come to, since the last sample
+    std::uint8_t kept_cap_ = 0;
+    std::uint64_t cap_breaches_ = 0;
+    std::vector<double> late_shares_;
 
     AxisObserver observe_;
     std::int64_t observe_every_us_ = 0;

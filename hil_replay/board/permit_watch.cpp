@@ -58,9 +58,10 @@ std::uint8_t n_of(const CanFrame& twin) noexcept {
 }  // namespace
 
 PermitWatch::PermitWatch(const CanLayout& layout, bool is_jogging, std::int64_t permit_us,
-                         const ConfigurationHashes& hashes) noexcept
+                         const ConfigurationHashes& hashes, CapPromise cap) noexcept
     : layout_(layout),
       hashes_(hashes),
+      cap_(cap),
       checker_(layout, times_of(layout)),
       has_true_timer_(permit_us == 0),
       holds_us_(permit_us != 0 ? permit_us
@@ -79,7 +80,7 @@ void PermitWatch::power_up() noexcept {
     options.period_us = layout_.sample_us;
     options.permit_samples_max = layout_.permit_samples.most;
     options.axis_count = 1;
-    options.cap_kind = AXG_BOARD_CAP_IGNORED;
+    options.cap_kind = cap_ == CapPromise::none ? AXG_BOARD_CAP_IGNORED : AXG_BOARD_CAP_ENFORCED;
     options.permit_id = layout_.permit_id;
     options.stop_id = layout_.stop_id;
     options.hashes_id = layout_.hashes_out_id;
@@ -138,6 +139,17 @@ std::uint8_t PermitWatch::ack_flags() const noexcept {
     return axg_board_flags(&board_, &says);
 }
 
+std::uint8_t PermitWatch::ordered_cap(std::int64_t now_us) noexcept {
+    const axg_board_motion motion = axg_board_may_move(&board_, library_us(now_us));
+    return *std::min_element(std::begin(motion.ordered.of), std::end(motion.ordered.of));
+}
+
+std::uint8_t PermitWatch::keep_cap(std::uint8_t wanted, std::int64_t now_us) noexcept {
+    axg_board_caps caps{};
+    std::fill(std::begin(caps.of), std::end(caps.of), wanted);
+    return axg_board_keeps(&board_, &caps, library_us(now_us)).of[0];
+}
+
 void PermitWatch::begin(std::int64_t now_us) noexcept {
     is_moving_ = true;
     if (has_session(layout_) && has_true_timer_) {
@@ -153,7 +165,7 @@ void PermitWatch::rest(std::int64_t now_us) noexcept {
 
 void PermitWatch::acknowledge(std::int64_t now_us) noexcept {
     if (!has_session(layout_)) {
-        *this = PermitWatch(layout_, is_jogging_, has_true_timer_ ? 0 : holds_us_, hashes_);
+        *this = PermitWatch(layout_, is_jogging_, has_true_timer_ ? 0 : holds_us_, hashes_, cap_);
         return;
     }
     if (now_us - last_stop_us_ < kQuietPeriods * layout_.sample_us) {
@@ -222,6 +234,7 @@ void PermitWatch::note_permit(std::uint64_t now_us, std::uint8_t samples) noexce
     const axg_board_permit& last = board_.last;
     ++permits_;
     speed_cap_ = *std::min_element(std::begin(last.caps.of), std::end(last.caps.of));
+    samples_ = samples;
     is_slow_ = last.word == AXG_BOARD_WORD_SLOW;
     // The first two after arming, or one that ends before an older one.
     if (!motion.may_move || motion.end_us != last.end_us) {
@@ -251,6 +264,7 @@ void PermitWatch::on_permit(const Permit& permit, std::int64_t now_us) noexcept 
     if (latched_us > certified_us_) {
         certified_us_ = latched_us;
         speed_cap_ = permit.speed_cap;
+        samples_ = layout_.permit_samples.least;
         is_slow_ = permit.word == PermitWord::slow;
         valid_until_us_ = latched_us + holds_us_;
     }

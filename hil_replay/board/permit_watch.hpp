@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "core/machine/configuration_hashes.hpp"
+#include "core/machine/machine.hpp"
 #include "firmware_if/board/axguard_board.h"
 #include "firmware_if/protocol/axis_frames.hpp"
 #include "firmware_if/protocol/guard_frames.hpp"
@@ -25,9 +26,10 @@ class PermitWatch {
     ///     nothing else; any other time such a permit is none
     /// @param permit_us  how long a permit holds on the board's timer; 0: n T, as it must
     /// @param hashes  of the machine that the board was given, where the layout has their ids
+    /// @param cap  version 2: whether it keeps all axes within the cap of the permits
     explicit PermitWatch(const CanLayout& layout, bool is_jogging = false,
-                         std::int64_t permit_us = 0,
-                         const ConfigurationHashes& hashes = {}) noexcept;
+                         std::int64_t permit_us = 0, const ConfigurationHashes& hashes = {},
+                         CapPromise cap = CapPromise::none) noexcept;
 
     /// The board latched a sample and sends it under this SYNC counter.
     void on_latch(std::uint8_t sync_counter, std::int64_t latched_us) noexcept;
@@ -35,6 +37,11 @@ class PermitWatch {
     [[nodiscard]] bool take_session(std::int64_t now_us, CanFrame& out) noexcept;
     /// Version 2: what the flags of that sample say of the permit whose cap the board keeps.
     [[nodiscard]] std::uint8_t ack_flags() const noexcept;
+    /// Version 2: the cap that all axes are to come to, 1/250 of rapid.
+    [[nodiscard]] std::uint8_t ordered_cap(std::int64_t now_us) noexcept;
+    /// The board keeps all axes below this from now on; a lower one must be true already.
+    /// @return  what it may have
+    [[nodiscard]] std::uint8_t keep_cap(std::uint8_t wanted, std::int64_t now_us) noexcept;
     /// The axes begin to move: from now on a permit that comes after the last one ran out is too
     /// late.
     void begin(std::int64_t now_us) noexcept;
@@ -56,6 +63,8 @@ class PermitWatch {
     [[nodiscard]] std::int64_t stopped_us() const noexcept { return stopped_us_; }
     /// Advisory of that permit: 1/250 of rapid; 0 without one.
     [[nodiscard]] std::uint8_t speed_cap() const noexcept { return speed_cap_; }
+    /// n of that permit; 0 without one.
+    [[nodiscard]] std::uint8_t samples() const noexcept { return samples_; }
     /// Whether that permit has the word slow.
     [[nodiscard]] bool is_slow() const noexcept { return is_slow_; }
     [[nodiscard]] std::uint64_t permits() const noexcept { return permits_; }
@@ -73,6 +82,7 @@ class PermitWatch {
 
     CanLayout layout_;
     ConfigurationHashes hashes_;
+    CapPromise cap_;
     PermitChecker checker_;         // of version 1
     axg_board board_{};             // of version 2, and of hashes
     int owed_part_ = kNothingOwed;  // of the guard's last hash
@@ -85,7 +95,7 @@ class PermitWatch {
     std::array<std::int64_t, kSyncCounterMax + 1> latched_us_;
     std::int64_t valid_until_us_ = INT64_MIN, certified_us_ = INT64_MIN, stopped_us_ = kNever;
     std::uint64_t permits_ = 0, refused_ = 0;
-    std::uint8_t speed_cap_ = 0;
+    std::uint8_t speed_cap_ = 0, samples_ = 0;
     bool is_moving_ = false, is_slow_ = false, is_jogging_;
 };
 

@@ -220,24 +220,28 @@ int run_bus_drive(const DriveArguments& arguments) {
         fmt::print(stderr, "{}\n", fault);
         return kExitCan;
     }
-    double speed_share = 1.0 / kSpeedCapRapid;
+    double speed_share = 1.0 / kSpeedCapRapid, lost_s = 0;
     BusDriveOptions options{.board = promised_live_board(machine, arguments.seed),
                             .obeys_cap = arguments.obeys_cap};
     options.board.tick_us = kMotionStepUs;
     options.board.hashes = read.board.hashes;
-    options.speed_share =
-        arguments.obeys_cap || has_clearance_levels(machine) ? &speed_share : nullptr;
+    const bool keeps_cap = machine.guard.cap != CapPromise::none;
+    const bool is_slowed = arguments.obeys_cap || has_clearance_levels(machine) || keeps_cap;
+    double* const share = is_slowed ? &speed_share : nullptr;
+    options.speed_share = keeps_cap ? nullptr : share;
+    options.lost_s = keeps_cap ? &lost_s : nullptr;
     const MotionLimits limits = make_motion_limits(machine);
     const MotionOptions motion;
+    keep_caps(machine, limits.smooth_s, share, options.board);
     const double whole_s =
-        arguments.obeys_cap ? motion_seconds(reading.program, limits, motion) : 0;
+        arguments.obeys_cap || keeps_cap ? motion_seconds(reading.program, limits, motion) : 0;
     PathRecord path;
     std::deque<BoardSample> samples;
     catch_signals();
     const BusDriveResult result =
         play(arguments, loaded, *wire, {gcode.start.data(), machine.axes.size()},
-             make_program_motion(reading.program, limits, motion, options.speed_share), options,
-             path, samples);
+             make_program_motion(reading.program, limits, motion, share, &lost_s), options, path,
+             samples);
     release_signals();
     PathJudge judge(machine, parts.engine->engine(), containment_test);
     path.show(judge);
@@ -248,7 +252,7 @@ int run_bus_drive(const DriveArguments& arguments) {
                        arguments.gcode.program,
                        arguments.mode,
                        arguments.seed,
-                       machine.guard.speed_cap,
+                       machine.guard.speed_cap || keeps_cap,
                        is_finished ? whole_s : 0};
     report.contact = judge.contact();
     report.bus = BusReport{.interface = arguments.bus, .wire = result.wire};

@@ -177,6 +177,15 @@ void look_for_ways_out(const DriveArguments& arguments, const LoadedMachine& loa
     }
 }
 
+void keep_caps(const Machine& machine, double smooth_s, double* share, BoardOptions& board) {
+    if (machine.guard.cap == CapPromise::none) {
+        return;
+    }
+    board.speed_share = share;
+    board.cap_smooth_s = smooth_s;
+    board.slow_share = has_clearance_levels(machine) ? kSlowShare : 1;
+}
+
 int read_inputs(const DriveArguments& arguments, LoadedMachine& loaded, DriveOptions& options,
                 GcodeOptions& gcode, GcodeResult& reading) {
     if (const int code = load(arguments.machine, loaded); code != kExitClean) {
@@ -242,30 +251,34 @@ int run_drive(const DriveArguments& arguments) {
     }
     GuardChain chain(machine, chosen.engine(engine), containment_test, parts.stop_certificate(),
                      parts.speed_advisory(), parts.margin_advisory());
-    double speed_share = 1.0 / kSpeedCapRapid;
-    options.speed_share =
-        arguments.obeys_cap || parts.margin_advisory() != nullptr ? &speed_share : nullptr;
+    double speed_share = 1.0 / kSpeedCapRapid, lost_s = 0;
+    const bool keeps_cap = machine.guard.cap != CapPromise::none;
+    const bool is_slowed = arguments.obeys_cap || parts.margin_advisory() != nullptr || keeps_cap;
+    double* const share = is_slowed ? &speed_share : nullptr;
+    options.speed_share = keeps_cap ? nullptr : share;
     options.obeys_cap = arguments.obeys_cap;
     const MotionLimits limits = make_motion_limits(machine);
+    keep_caps(machine, limits.smooth_s, share, options.board);
+    options.lost_s = keeps_cap ? &lost_s : nullptr;
     const MotionOptions motion;
     DriveCsv csv(machine);
     PathJudge judge(machine, engine.engine(), containment_test);
     const auto page = arguments.report.empty()
                           ? nullptr
                           : std::make_unique<PageRecorder>(loaded, engine.engine());
-    const bool wants_length = arguments.obeys_cap || isatty(STDERR_FILENO) == 1;
+    const bool wants_length = arguments.obeys_cap || keeps_cap || isatty(STDERR_FILENO) == 1;
     const double whole_s = wants_length ? motion_seconds(program, limits, motion) : 0;
     const DriveResult result =
         run_observed(arguments, machine, chain, gcode.start,
-                     make_program_motion(program, limits, motion, options.speed_share), whole_s,
-                     options, csv, page.get(), judge);
+                     make_program_motion(program, limits, motion, share, &lost_s), whole_s, options,
+                     csv, page.get(), judge);
     const bool is_finished = result.state == BoardState::finished;
     if (result.samples >= arguments.gcode.samples_max) {
         fmt::print(stderr, "{}: program: {}\n", arguments.gcode.program,
                    too_many_samples(arguments.gcode.samples_max));
         return kExitInput;
     }
-    const double free_s = arguments.obeys_cap && is_finished ? whole_s : 0;
+    const double free_s = (arguments.obeys_cap || keeps_cap) && is_finished ? whole_s : 0;
     const bool has_cap = parts.speed_advisory() != nullptr;
     DriveReport report{machine,        engine.engine(), result,  arguments.gcode.program,
                        arguments.mode, arguments.seed,  has_cap, free_s};

@@ -58,7 +58,7 @@ BusDriveResult drive_on_bus(const Machine& machine, CanTransport& wire, const Li
                     observers.watch_us);
     }
     LiveLoop loop(machine, board, wire, clock);
-    DriveTally tally(options.speed_share, options.obeys_cap);
+    DriveTally tally(options.speed_share, options.obeys_cap, options.lost_s);
     if (loop.listen()) {
         play(loop, board, tally, is_ended, observers);
     }

@@ -17,6 +17,7 @@ struct BusDriveOptions {
     BoardOptions board;
     double* speed_share = nullptr;  // as in DriveOptions
     bool obeys_cap = true;
+    const double* lost_s = nullptr;
 };
 
 struct BusDriveResult {

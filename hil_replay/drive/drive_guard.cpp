@@ -72,6 +72,7 @@ void DriveGuard::note_stop() {
              .pair = live.pair(),
              .fault = live.receiver().stop_cause(),
              .limit = result_.limit,
+             .cap = result_.cap_fact,
              .snapshot = chain_.snapshot(),
              .unproven = unproven(live.pair())};
 }

@@ -20,6 +20,7 @@ struct DriveStop {
     std::uint32_t pair = kNoIndex;
     ReceiverFault fault = ReceiverFault::none;  // cause input
     LimitFact limit{};                          // for left_limits
+    CapFact cap{};                              // for left_cap
     AxisSnapshot snapshot;                      // the last one
     UnprovenPair unproven{};                    // stoppable mode: `pair`, as its proof failed
 };

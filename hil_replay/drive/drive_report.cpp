@@ -54,6 +54,11 @@ void print_guard_stop(const DriveReport& report, std::FILE* words) {
     if (stop.reason == StopReason::left_limits) {
         fmt::print(words, "  {}\n", limit_text(stop.limit, report.machine));
     }
+    if (stop.reason == StopReason::left_cap) {
+        const std::uint32_t axis = stop.cap.axis;
+        fmt::print(words, "  the board broke its cap: {}{}\n", to_text(stop.cap.kind),
+                   axis == kNoIndex ? "" : ", axis " + report.machine.axes[axis].name);
+    }
     if (report.why) {
         fmt::print(words, "{}", format_why(report.machine, *report.why));
     }
@@ -77,6 +82,26 @@ void print_bus(const DriveReport& report, std::FILE* words) {
                static_cast<double>(wire.late_us_max) * 1e-3);
 }
 
+/// What each slow-down cost, the dearest first.
+void print_caps(const DriveReport& report, std::FILE* words) {
+    constexpr std::size_t kShown = 10;
+    const DriveResult& result = report.result;
+    fmt::print(words, "cap of {}: {} slow-downs, {:.3f} s lost; shortest permit {} samples\n",
+               to_text(report.machine.guard.cap), result.slow_downs.size(), result.lost_s,
+               result.samples_least);
+    std::vector<SlowDown> dearest = result.slow_downs;
+    std::stable_sort(dearest.begin(), dearest.end(),
+                     [](const SlowDown& a, const SlowDown& b) { return a.lost_s > b.lost_s; });
+    for (std::size_t i = 0; i < std::min(kShown, dearest.size()); ++i) {
+        const SlowDown& one = dearest[i];
+        fmt::print(words, "  at {:.3f} s for {:.3f} s, down to {:.1f} % of rapid: {:.3f} s lost\n",
+                   one.begin_s, one.seconds, 0.4 * one.least, one.lost_s);
+    }
+    if (result.cap_breaches != 0) {
+        fmt::print(words, "  the simulated board exceeded its cap {} times\n", result.cap_breaches);
+    }
+}
+
 void print_time(const DriveReport& report, std::FILE* words) {
     const DriveResult& result = report.result;
     if (result.state == BoardState::waiting) {
@@ -94,6 +119,9 @@ void print_time(const DriveReport& report, std::FILE* words) {
         fmt::print(words, "; slow for {} samples", result.slow_samples);
     }
     fmt::print(words, "\n");
+    if (report.machine.guard.cap != CapPromise::none) {
+        print_caps(report, words);
+    }
 }
 
 }  // namespace
@@ -144,6 +172,11 @@ void print_drive(const DriveReport& report, std::FILE* words) {
     }
     if (result.state == BoardState::finished) {
         fmt::print(words, "the program ran to its end\n");
+    } else if (result.is_held) {
+        fmt::print(
+            words,
+            "HELD: the cap keeps the axes where they stand, since not even a crawl is proven "
+            "ahead\n");
     } else {
         fmt::print(words, "STOP: {}\n", why_text(report));
         print_guard_stop(report, words);

@@ -42,10 +42,30 @@ nlohmann::ordered_json bus_json(const Machine& machine, const BusReport& bus) {
     return out;
 }
 
+nlohmann::ordered_json cap_json(const Machine& machine, const DriveResult& result) {
+    auto slow_downs = nlohmann::ordered_json::array();
+    for (const SlowDown& one : result.slow_downs) {
+        slow_downs.push_back({{"at_s", one.begin_s},
+                              {"duration_s", one.seconds},
+                              {"cap_least", one.least},
+                              {"lost_s", one.lost_s}});
+    }
+    return {{"promise", to_text(machine.guard.cap)},
+            {"held", result.is_held},
+            {"lost_s", result.lost_s},
+            {"slow_downs", slow_downs}};
+}
+
 nlohmann::ordered_json guard_stop_json(const DriveReport& report) {
     const DriveStop& stop = report.result.guard_stop;
     nlohmann::ordered_json out{{"reason", reason_text(stop)}, {"sample", stop.snapshot.sample}};
     add_stop_cause(report.machine, stop.reason, stop.pair, stop.fault, stop.limit, out);
+    if (stop.reason == StopReason::left_cap) {
+        out["cap"] = to_text(stop.cap.kind);
+        if (stop.cap.axis != kNoIndex) {
+            out["axis"] = report.machine.axes[stop.cap.axis].name;
+        }
+    }
     if (report.why) {
         out["why"] = why_json(report.machine, *report.why);
     }
@@ -81,6 +101,12 @@ std::string describe_drive(const DriveReport& report) {
     }
     if (report.has_cap) {
         out["speed_cap_least"] = result.speed_cap;
+    }
+    if (result.samples_least != 0) {
+        out["permit_samples_least"] = result.samples_least;
+    }
+    if (machine.guard.cap != CapPromise::none) {
+        out["cap"] = cap_json(machine, result);
     }
     if (has_clearance_levels(machine)) {
         out["samples_slow"] = result.slow_samples;

@@ -7,6 +7,12 @@
 
 namespace axg {
 
+namespace {
+
+constexpr double kSecondsPerUs = 1e-6;
+
+}  // namespace
+
 BoardOptions promised_board(const Machine& machine, std::uint64_t seed) {
     BoardOptions board;
     board.seed = seed;
@@ -15,6 +21,7 @@ BoardOptions promised_board(const Machine& machine, std::uint64_t seed) {
     // The time between two samples is off by twice the jitter of one.
     board.latch_jitter_us_max =
         static_cast<std::int64_t>(std::floor(machine.guard.latch_jitter_s * 0.5e6));
+    board.cap = machine.guard.cap;
     return board;
 }
 
@@ -50,6 +57,30 @@ void DriveTally::note(const MotionBoard& board) noexcept {
         *speed_share_ = share_of(board.permits(), obeys_cap_);
     }
     slow_samples_ += is_moving && board.permits().is_slow() ? 1U : 0U;
+    const std::uint8_t samples = board.permits().samples();
+    if (is_moving && samples != 0) {
+        samples_least_ = samples_least_ == 0 ? samples : std::min(samples_least_, samples);
+    }
+    if (lost_s_ != nullptr && is_moving) {
+        note_cap(board);
+    }
+}
+
+void DriveTally::note_cap(const MotionBoard& board) noexcept {
+    const std::uint8_t cap = board.permits().speed_cap();
+    const double now_s =
+        static_cast<double>(board.next_latch_us() - board.moving_since_us()) * kSecondsPerUs;
+    if (cap < kCapRapid && !is_slowed_ && slow_downs_.size() < kSlowDownsMax) {
+        slow_downs_.push_back({.begin_s = now_s});
+        lost_before_s_ = *lost_s_;
+    }
+    is_slowed_ = cap < kCapRapid;
+    if (!slow_downs_.empty()) {  // what one has cost is known when the axes are fast again
+        SlowDown& last = slow_downs_.back();
+        last.least = is_slowed_ ? std::min(last.least, cap) : last.least;
+        last.seconds = is_slowed_ ? now_s - last.begin_s : last.seconds;
+        last.lost_s = *lost_s_ - lost_before_s_;
+    }
 }
 
 DriveResult DriveTally::result(const Machine& machine, const MotionBoard& board) const {
@@ -64,6 +95,10 @@ DriveResult DriveTally::result(const Machine& machine, const MotionBoard& board)
     result.ended_us = board.next_latch_us() - machine.can.sample_us;
     result.speed_cap = speed_cap_;
     result.slow_samples = slow_samples_;
+    result.samples_least = samples_least_;
+    result.slow_downs = slow_downs_;
+    result.lost_s = lost_s_ != nullptr ? *lost_s_ : 0;
+    result.cap_breaches = board.cap_breaches();
     return result;
 }
 
@@ -89,14 +124,16 @@ DriveResult drive(const Machine& machine, GuardChain& chain, std::span<const dou
         std::int64_t{machine.can.look_ahead_samples} * machine.can.sample_us;
     const std::int64_t wait_ends_us = kBoardStartUs + options.wait_us_max + buffer_us;
     bool goes_on = true;
-    DriveTally tally(options.speed_share, options.obeys_cap);
+    DriveTally tally(options.speed_share, options.obeys_cap, options.lost_s);
+    bool is_held = false;
     while (goes_on && !board.is_at_rest()) {
         if (!loop.cycle()) {
             break;
         }
         tally.note(board);
         const bool is_waiting = board.state() == BoardState::waiting;
-        goes_on = (!is_waiting || board.next_latch_us() < wait_ends_us) &&
+        is_held = guard.result().is_held;
+        goes_on = !is_held && (!is_waiting || board.next_latch_us() < wait_ends_us) &&
                   board.next_latch_us() - kBoardStartUs < options.time_us_max &&
                   !(is_waiting && guard.stop().cause != GuardFault::none);
         if (observers.each) {
@@ -109,6 +146,7 @@ DriveResult drive(const Machine& machine, GuardChain& chain, std::span<const dou
         result.guard_stop = guard.withheld();
     }
     result.frames_lost = loop.bus().lost();
+    result.is_held = is_held;
     return result;
 }
 

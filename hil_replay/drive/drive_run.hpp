@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <span>
+#include <vector>
 
 #include "core/machine/machine.hpp"
 #include "hil_replay/board/closed_loop.hpp"
@@ -13,6 +14,13 @@ namespace axg {
 
 // What a board of ours makes of the word slow: no axis faster than this share of its largest speed.
 inline constexpr double kSlowShare = 0.25;
+
+/// A stretch of time in which the permits ordered less than rapid.
+struct SlowDown {
+    double begin_s = 0, seconds = 0;  // since the axes began to move
+    double lost_s = 0;                // what it cost, where the motion says so
+    std::uint8_t least = kCapRapid;   // 1/250 of rapid
+};
 
 struct DriveOptions {
     BoardOptions board;  // the guard is given the same hashes
@@ -25,6 +33,8 @@ struct DriveOptions {
     // come.
     double* speed_share = nullptr;
     bool obeys_cap = true;  // false: the word slow alone
+    // Of a board that keeps caps (BoardOptions::cap): what they have cost so far, by the motion.
+    const double* lost_s = nullptr;
 };
 
 struct DriveResult {
@@ -38,22 +48,39 @@ struct DriveResult {
     std::int64_t ended_us = 0;       // to one sample
     std::uint8_t speed_cap = 250;    // 1/250 of rapid: the least in motion since one was known
     std::uint64_t slow_samples = 0;  // in motion under a permit that says slow
+    std::uint8_t samples_least = 0;  // n of the shortest permit in motion; 0: there was none
+    // Of a board that keeps caps.
+    std::vector<SlowDown> slow_downs{};
+    double lost_s = 0;
+    std::uint64_t cap_breaches = 0;  // ticks and stops in which it did not
+    bool is_held = false;            // it waits on its path, for so long that a person has to know
 };
 
 /// What both kinds of drive do after each sample: the board obeys what a permit advises, and the
 /// result counts it.
 class DriveTally {
   public:
-    /// @param speed_share, obeys_cap  as in DriveOptions
-    DriveTally(double* speed_share, bool obeys_cap) noexcept
-        : speed_share_(speed_share), obeys_cap_(obeys_cap) {}
+    /// @param speed_share, obeys_cap, lost_s  as in DriveOptions
+    DriveTally(double* speed_share, bool obeys_cap, const double* lost_s = nullptr)
+        : speed_share_(speed_share), lost_s_(lost_s), obeys_cap_(obeys_cap) {
+        slow_downs_.reserve(kSlowDownsMax);
+    }
 
     void note(const MotionBoard& board) noexcept;
     /// All that the board knows; of the guard and of the wire nothing.
     [[nodiscard]] DriveResult result(const Machine& machine, const MotionBoard& board) const;
 
+    static constexpr std::size_t kSlowDownsMax = 10'000;  // more are one with the last
+
   private:
+    void note_cap(const MotionBoard& board) noexcept;
+
     double* speed_share_;
+    const double* lost_s_;
+    std::vector<SlowDown> slow_downs_;
+    double lost_before_s_ = 0;  // up to the slow-down that is on
+    bool is_slowed_ = false;
+    std::uint8_t samples_least_ = 0;
     bool obeys_cap_, is_cap_known_ = false;
     std::uint8_t speed_cap_ = 250;
     std::uint64_t slow_samples_ = 0;

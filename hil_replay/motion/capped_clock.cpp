@@ -53,6 +53,11 @@ double CappedClock::step(double speed_share) noexcept {
     // still be braked for what comes behind it.
     const Cell& ahead = (*cells_)[cell_at(reached_mm(speed))];
     speed = std::min({speed, ahead.speed_max, speed_on_curve(ahead, at_mm_, speed_)});
+    if (wanted <= 0 && speed <= 0) {  // it stands where it is, and goes on from there
+        at_mm_ = std::min(reached_mm(0), total_mm_);
+        speed_ = 0;
+        return at_mm_;
+    }
     at_mm_ = reached_mm(speed);
     speed_ = speed;
     if (speed <= 0 || at_mm_ >= total_mm_) {

@@ -17,7 +17,7 @@ class CappedClock {
     /// Both as plan_run and plan_rapid left them; they must outlive the run.
     void begin(const std::vector<Cell>* cells, const std::vector<RapidCell>* rapids) noexcept;
     /// Distance after another step of kMotionStepS, mm, before averaging; stays at the end.
-    /// @param speed_share  of each axis' largest speed, above 0
+    /// @param speed_share  of each axis' largest speed; 0: it comes to rest, and stands
     double step(double speed_share) noexcept;
     [[nodiscard]] bool is_at_end() const noexcept { return is_at_end_; }
 

@@ -70,6 +70,7 @@ void MotionSampler::begin_run() {
     if (speed_share_ != nullptr) {
         plan_rapid(run_, limits_, rapids_);
         capped_.begin(&cells_, &rapids_);
+        free_mm_ = 0;
     }
     std::fill(window_.begin(), window_.end(), 0);
     window_sum_ = 0;
@@ -79,11 +80,21 @@ void MotionSampler::begin_run() {
     is_running_ = true;
 }
 
+double MotionSampler::step_capped() {
+    lost_steps_ += capped_.is_at_end() ? 0 : 1;
+    const double reached_mm = capped_.step(*speed_share_);
+    while (!clock_.is_at_end() && free_mm_ < reached_mm) {
+        free_mm_ = clock_.step();
+        --lost_steps_;
+    }
+    return reached_mm;
+}
+
 void MotionSampler::step_run(MotionSample& out) {
     // The true end is the run's whole length: rounding of the profile's own sum may end a hair
     // beside it.
     const bool is_capped = speed_share_ != nullptr;
-    const double reached_mm = is_capped ? capped_.step(*speed_share_) : clock_.step();
+    const double reached_mm = is_capped ? step_capped() : clock_.step();
     const bool is_at_end = is_capped ? capped_.is_at_end() : clock_.is_at_end();
     const std::int64_t distance =
         is_at_end ? run_.length

@@ -27,12 +27,15 @@ class MotionSampler {
     MotionSampler(const Program& program, const MotionLimits& limits, const MotionOptions& options);
 
     /// From the next stretch on no axis is faster than this share of its largest speed, which is
-    /// read at every step and reached with the accelerations of the plan. Above 0.
+    /// read at every step and reached with the accelerations of the plan; 0: they stand.
     /// @param speed_share  must outlive the sampler
     void obey(const double* speed_share) noexcept { speed_share_ = speed_share; }
 
     /// The next sample; the first is the start pose at index 0. False after the last move's end.
     bool next(MotionSample& out);
+
+    /// Steps more than it would have been without a share to keep to, up to the last sample.
+    [[nodiscard]] std::int64_t lost_steps() const noexcept { return lost_steps_; }
 
     [[nodiscard]] std::uint32_t run_count() const noexcept { return run_count_; }
     [[nodiscard]] std::uint32_t blend_count() const noexcept { return blend_count_; }
@@ -43,6 +46,7 @@ class MotionSampler {
     bool begin_move();
     void begin_run();
     void step_run(MotionSample& out);
+    [[nodiscard]] double step_capped();
 
     const Program& program_;
     const MotionLimits& limits_;
@@ -59,6 +63,8 @@ class MotionSampler {
     std::vector<RapidCell> rapids_;
     ProfileClock clock_;
     CappedClock capped_;  // in its place, with a share to keep to
+    double free_mm_ = 0;  // of `clock_`, which then only says when it would be there
+    std::int64_t lost_steps_ = 0;
     const double* speed_share_ = nullptr;
     PieceCurve curve_;
     std::size_t piece_ = 0;

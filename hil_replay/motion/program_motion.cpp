@@ -45,10 +45,11 @@ void settle(const Follower& f, double from, std::uint32_t axis, AxisMotion& at) 
 }  // namespace
 
 CommandedMotion make_program_motion(const Program& program, const MotionLimits& limits,
-                                    const MotionOptions& options, const double* speed_share) {
+                                    const MotionOptions& options, const double* speed_share,
+                                    double* lost_s) {
     const auto follower = std::make_shared<Follower>(program, limits, options, speed_share);
     const auto from = std::make_shared<AxisPositions>(program.start);
-    return [follower, from](std::span<AxisMotion> axes) {
+    return [follower, from, lost_s](std::span<AxisMotion> axes) {
         Follower& f = *follower;
         bool is_settled = true;
         for (std::uint32_t i = 0; i < axes.size(); ++i) {
@@ -59,6 +60,9 @@ CommandedMotion make_program_motion(const Program& program, const MotionLimits& 
         }
         f.now = f.next;
         f.has_more = f.has_more && f.sampler.next(f.next);
+        if (lost_s != nullptr) {
+            *lost_s = static_cast<double>(f.sampler.lost_steps()) * kMotionStepS;
+        }
         const bool is_over = !f.has_more && is_settled;
         for (std::uint32_t i = 0; i < axes.size(); ++i) {
             if (is_over) {

@@ -162,7 +162,7 @@ void BlackBoxReplay::on(const LiveQuery& query) {
         if (query.kind == LiveQuery::Kind::snapshot) {
             compare(query.event);
         }
-        waiting_.push_back({query.number, query.kind, query.is_armed, *made_});
+        waiting_.push_back({query.number, query.kind, query.is_armed, *made_, query.caps});
     } else if (query.kind == LiveQuery::Kind::snapshot) {
         ++(runs_in_snapshots_ ? result_.snapshots.run_in : result_.snapshots.different);
     }
@@ -187,7 +187,7 @@ void BlackBoxReplay::on(const LiveResult& live_result) {
     std::optional<Heard> queried;
     while (!waiting_.empty() && !is_after(waiting_.front().number, live_result.taken)) {
         const Heard& heard = waiting_.front();
-        chain_.take(heard.event);
+        chain_.take(heard.event, heard.caps);
         taken_ += heard.kind == LiveQuery::Kind::snapshot ? 1 : 0;
         if (heard.number == live_result.number) {
             queried = heard;
@@ -216,6 +216,9 @@ void BlackBoxReplay::on(const LiveResult& live_result) {
                     .latched_us = queried->event.snapshot.latched_us};
     }
     compare(live_result, made);
+    if (!guard_) {  // without the advisories it follows what was ordered
+        chain_.set_cap_order(live_result.result.cap_order);
+    }
 }
 
 void BlackBoxReplay::compare(const LiveResult& recorded, const CycleResult& made) {

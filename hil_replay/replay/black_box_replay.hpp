@@ -74,6 +74,7 @@ class BlackBoxReplay {
         LiveQuery::Kind kind = LiveQuery::Kind::self_test;
         bool is_armed = false;
         ReceiverEvent event;
+        CapFacts caps;
     };
 
     void on(const CanArrival& arrival);

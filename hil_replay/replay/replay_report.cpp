@@ -145,6 +145,12 @@ void print_proofs(const ReplayReport& report, std::FILE* words) {
         fmt::print(words, "\nproven to standstill, at most {:.3f} ms after each sample\n",
                    free_seconds(machine, machine.can.permit_samples.least) * 1e3);
     }
+    if (machine.guard.cap != CapPromise::none) {
+        fmt::print(words,
+                   "guard.cap: {}: not used, since the board of a trace cannot obey; axguard drive "
+                   "shows it\n",
+                   to_text(machine.guard.cap));
+    }
     fmt::print(words, "plan: {}\n", format_plan(report.run.plan()));
     print_not_proven(report, words);
     const auto line = [words](const char* name, const CountTable& table, std::uint32_t most) {

@@ -59,7 +59,9 @@ ReplayRun::ReplayRun(const Machine& machine, Engine engine, const ContainmentTes
       observe_(std::move(observe)),
       live_{.machine = machine, .chain = chain_, .clock = options.clock},
       pairs_(machine.pairs.size()),
-      limits_(machine) {}
+      limits_(machine) {
+    chain_.ignore_caps();
+}
 
 void ReplayRun::start(std::int64_t now_us) {
     TimedGuardOptions options;

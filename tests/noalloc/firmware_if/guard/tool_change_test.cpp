@@ -61,20 +61,30 @@ class ToolChange : public NoAllocation {
     /// Permits on the wire by the tool number of their snapshot; the others are counted as stops.
     struct Sent {
         std::array<int, 10> permits{}, stops{};
+        int capped = 0;
     };
-    Sent run(const std::vector<CanFrame>& frames, StopCertificate* stop_certificate) {
-        GuardChain chain(loaded.machine, engine->engine(), *containment_test, stop_certificate);
+    Sent run(const std::vector<CanFrame>& frames, StopCertificate* stop_certificate,
+             SpeedAdvisory* advisory = nullptr) {
+        GuardChain chain(loaded.machine, engine->engine(), *containment_test, stop_certificate,
+                         advisory);
+        AckLedger ledger;
+        std::uint8_t live = 0;
         AxisReceiver receiver(loaded.machine);
         Sent sent;
         const std::uint64_t before = allocations;
         for (const CanFrame& frame : frames) {
             const ReceiverEvent event = receiver.on_frame(frame);
-            chain.take(event);
+            chain.take(event,
+                       ledger.note_sample(live == 0 ? std::nullopt
+                                                    : std::optional<std::uint8_t>(live & 15U)));
             if (event.kind != ReceiverEvent::Kind::snapshot) {
                 continue;
             }
             chain.evaluate();
             const CycleResult result = chain.decide(event.state == ReceiverState::valid, true);
+            chain.update_advisories();
+            ledger.note_sent(++live, caps_of_permit(result.cap_order.cap, result.cap_order.mask));
+            sent.capped += result.has_cap ? 1 : 0;
             const bool is_run = permit_of(result, 0, event.sync_counter).word == PermitWord::run;
             ++(is_run ? sent.permits : sent.stops)[event.snapshot.tool];
         }
@@ -97,6 +107,19 @@ TEST_F(ToolChange, AllocatesNothingInEitherMode) {
         EXPECT_EQ(sent.permits[2], 80);
         EXPECT_EQ(sent.stops[2], 0);
     }
+}
+
+TEST_F(ToolChange, AllocatesNothingWithAnEnforcedCap) {
+    loaded.machine.guard.cap = CapPromise::all_axes;
+    loaded.machine.can.permit_version = 2;
+    loaded.machine.can.permit_samples = {3, 12};
+    const auto frames = frames_with({1, 2, 1, 2});
+    std::optional<StopCertificate> capped = make_stop_certificate(loaded);
+    std::optional<SpeedAdvisory> advisory = SpeedAdvisory::create(loaded.machine, true);
+    ASSERT_TRUE(capped && advisory);
+    const Sent sent = run(frames, &*capped, &*advisory);
+    EXPECT_EQ(sent.capped, 160);
+    EXPECT_GT(sent.permits[2], 70);
 }
 
 TEST_F(ToolChange, ToANumberThatNoToolHasEndsThePermits) {

@@ -52,12 +52,14 @@ void draw_limits(Random& random, Machine& machine) {
 }
 
 enum class Guard { whole, contact_only, no_jerk, no_dead_man };
-enum class Board { each_axis, each_axis_with_look_ahead, along_path };
+enum class Board { each_axis, each_axis_with_look_ahead, along_path, each_axis_with_cap };
 
 struct Tally {
     std::uint64_t approaches = 0, moved = 0, stopped = 0, contacts = 0, too_near = 0;
-    std::uint64_t left_limits = 0;  // stops for a broken limit
-    double least_mm = HUGE_VAL;     // clearance seen, up to kWatchedMm
+    std::uint64_t left_limits = 0;               // stops for a broken limit
+    std::uint64_t left_cap = 0;                  // and for a cap that was not kept
+    std::uint64_t slowed = 0, cap_breaches = 0;  // approaches with a lower cap; ticks beyond it
+    double least_mm = HUGE_VAL;                  // clearance seen, up to kWatchedMm
 };
 
 /// Judges the true axes wherever they may be too near: in between no point can have moved that far.
@@ -105,6 +107,7 @@ struct Drawn {
     Approach approach;
     Positions start;
     DriveOptions options;
+    std::unique_ptr<double> share = std::make_unique<double>(1);  // of a board that keeps caps
     std::int64_t moves_us = 0;  // when the first command comes out of the board's buffer
 };
 
@@ -112,7 +115,12 @@ struct Drawn {
 Drawn draw_approach(Random& random, ContactScene& scene, Guard guard, Board board) {
     Machine& machine = scene.machine();
     draw_limits(random, machine);
-    if (board != Board::each_axis) {
+    if (board == Board::each_axis_with_cap) {
+        machine.guard.cap = CapPromise::all_axes;
+        machine.can.permit_version = 2;
+        machine.can.permit_samples = {3, static_cast<std::uint8_t>(8 + random() % 5)};
+        machine.can.stale_after_us = 1000U * machine.can.permit_samples.most;
+    } else if (board != Board::each_axis) {
         give_look_ahead(random, {.linear_mm = 0.05, .rotary_rad = 2e-4}, machine);
     }
     if (board == Board::along_path) {
@@ -127,6 +135,9 @@ Drawn draw_approach(Random& random, ContactScene& scene, Guard guard, Board boar
         share = random() % 2 == 0 ? 1 : between(random, 0.1, 1);
     }
     out.options.board = promised_board(machine, random());
+    if (board == Board::each_axis_with_cap) {
+        out.options.board.speed_share = out.share.get();
+    }
     if (guard == Guard::no_dead_man) {
         lab::forget_dead_man(out.options.board);
     }
@@ -145,22 +156,32 @@ DriveResult drive_watched(ContactScene& scene, Guard guard, const Drawn& drawn, 
     }
     std::optional<StopCertificate> certificate =
         guard == Guard::contact_only ? std::nullopt : make_stop_certificate(of_guard);
+    const bool has_cap = certificate && scene.machine().guard.cap != CapPromise::none;
+    std::optional<SpeedAdvisory> advisory =
+        has_cap ? SpeedAdvisory::create(of_guard.machine, true) : std::nullopt;
     GuardChain chain(scene.machine(), scene.engine->engine(), *scene.containment_test,
-                     certificate ? &*certificate : nullptr);
+                     certificate ? &*certificate : nullptr, advisory ? &*advisory : nullptr);
     DriveObservers observers;
     observers.watch_us = kWatchUs;
     observers.watch = [&](std::int64_t, std::span<const AxisMotion> axes) { watcher.look(axes); };
     observers.each = [&](const MotionBoard&, const DriveGuard&) { return !watcher.touches(); };
     return drive(scene.machine(), chain, scene.of(drawn.start),
-                 make_approach(scene.machine(), drawn.approach), drawn.options, observers);
+                 make_approach(scene.machine(), drawn.approach, drawn.share.get()), drawn.options,
+                 observers);
 }
 
-void approach_once(Random& random, ContactScene& scene, Guard guard, Board board, Tally& tally) {
+void approach_once(Random& random, ContactScene& scene, Guard guard, Board board, Tally& tally,
+                   CapFault cap_fault = CapFault::none) {
     const Machine as_loaded = scene.machine();
     scene.machine().can.permit_version = version_of(tally.approaches);
     Drawn drawn = draw_approach(random, scene, guard, board);
     BusFaults& faults = drawn.options.faults;
     faults.lost = random() % 3 == 0 ? between(random, 0, 0.05) : 0;
+    if (board == Board::each_axis_with_cap) {
+        faults.permit_lost = random() % 2 == 0 ? between(random, 0, 0.2) : 0;
+        faults.late = random() % 3 == 0 ? between(random, 0, 0.1) : 0;
+        drawn.options.board.cap_fault = cap_fault;
+    }
     // Killed before it can say stop: then the board's own timer is all there is.
     const bool is_killed = guard == Guard::no_dead_man || random() % 4 == 0;
     const auto killed_us = static_cast<std::int64_t>(between(random, 15e3, 120e3));
@@ -172,16 +193,19 @@ void approach_once(Random& random, ContactScene& scene, Guard guard, Board board
     tally.stopped += result.state == BoardState::stopped ? 1 : 0;
     tally.contacts += watcher.touches() ? 1 : 0;
     tally.left_limits += result.guard_stop.reason == StopReason::left_limits ? 1 : 0;
+    tally.left_cap += result.guard_stop.reason == StopReason::left_cap ? 1 : 0;
+    tally.slowed += result.speed_cap < kCapRapid ? 1 : 0;
+    tally.cap_breaches += result.cap_breaches;
     tally.too_near += watcher.too_near() ? 1 : 0;
     tally.least_mm = std::min(tally.least_mm, watcher.least_mm());
     scene.machine() = as_loaded;
 }
 
 Tally run(std::vector<std::unique_ptr<ContactScene>>& scenes, Random& random, Guard guard,
-          Board board, std::uint64_t count) {
+          Board board, std::uint64_t count, CapFault cap_fault = CapFault::none) {
     Tally tally;
     for (std::uint64_t n = 0; n < count; ++n) {
-        approach_once(random, *scenes[n % scenes.size()], guard, board, tally);
+        approach_once(random, *scenes[n % scenes.size()], guard, board, tally, cap_fault);
     }
     return tally;
 }
@@ -237,6 +261,48 @@ TEST(ClosedLoop, EveryStopAlongThePathEndsClearAndWithoutAPartOfTheGuardNot) {
 
 TEST(ClosedLoop, EveryStopFromALookAheadPathEndsClearAndWithoutAPartOfTheGuardNot) {
     run_all(Board::each_axis_with_look_ahead, 20261126);
+}
+
+// With caps, permits lost at up to 20 % and late: what a board acknowledges and keeps is believed,
+// and one that does not keep it is seen.
+TEST(ClosedLoop, EveryApproachUnderACapEndsClearAndABoardThatLiesIsSeen) {
+    Random random(printed_seed(20261127));
+    const std::uint64_t count = count_from_environment(kUsual);
+    std::vector<std::unique_ptr<ContactScene>> scenes;
+    for (const std::string& name : kMachines) {
+        scenes.push_back(make_contact_scene(random, name, kMarginMm));
+        ASSERT_TRUE(scenes.back() && scenes.back()->containment_test);
+    }
+    const auto run_with = [&](const char* name, Guard guard, std::uint64_t approaches,
+                              CapFault fault) {
+        const Tally tally =
+            run(scenes, random, guard, Board::each_axis_with_cap, approaches, fault);
+        print(name, tally);
+        std::printf("    %llu slowed, %llu seen to break their cap\n",
+                    static_cast<unsigned long long>(tally.slowed),
+                    static_cast<unsigned long long>(tally.left_cap));
+        return tally;
+    };
+    const Tally whole = run_with("whole guard", Guard::whole, count, CapFault::none);
+    EXPECT_EQ(whole.contacts, 0U);
+    EXPECT_EQ(whole.too_near, 0U);
+    EXPECT_EQ(whole.left_limits, 0U);
+    EXPECT_EQ(whole.left_cap, 0U) << "every board kept its cap";
+    EXPECT_EQ(whole.cap_breaches, 0U);
+    const std::uint64_t few = std::max<std::uint64_t>(count / 8, 12);
+    std::uint64_t seen = 0;
+    for (const auto& [name, fault] :
+         {std::pair{"late", CapFault::late}, std::pair{"half", CapFault::half},
+          std::pair{"ignores", CapFault::ignores}}) {
+        seen += run_with(name, Guard::whole, few, fault).left_cap;
+    }
+    const Tally contact = run_with("contact only", Guard::contact_only, few, CapFault::none);
+    const Tally no_dead_man = run_with("no dead man", Guard::no_dead_man, few, CapFault::none);
+    if (count >= kUsual) {
+        EXPECT_GT(whole.slowed, 0U);
+        EXPECT_GT(seen, 0U);
+        EXPECT_GT(contact.contacts + no_dead_man.contacts, 0U);
+    }
 }
 
 enum class Fault { silence, late, killed, stuck };

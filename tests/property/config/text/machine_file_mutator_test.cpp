@@ -141,6 +141,7 @@ guard:
   questions: 400
   speed_cap: true
   cap_lead_ms: 35
+  cap: none
   travel_proofs: true
   overrun_mm: 1
   overrun_deg: 0.25
@@ -380,6 +381,7 @@ TEST_F(Mutator, EveryDroppedKeyIsRefusedUnlessItIsOptional) {
                                             "questions",
                                             "speed_cap",
                                             "cap_lead_ms",
+                                            "cap",
                                             "travel_proofs",
                                             "overrun_mm",
                                             "overrun_deg",

@@ -60,7 +60,10 @@ class Dump {
             out.event.snapshot.axis_count = 1 + draw(kAxesMax);
             for (std::uint32_t i = 0; i < out.event.snapshot.axis_count; ++i) {
                 out.event.snapshot.position[i] = static_cast<double>(random_()) * 1e-9;
+                out.caps.acked[i] = static_cast<std::uint8_t>(draw(251));
+                out.caps.since[i] = static_cast<std::uint8_t>(draw(251));
             }
+            out.caps.status = static_cast<AckStatus>(draw(3));
         }
         return out;
     }
@@ -84,7 +87,12 @@ class Dump {
                 live_result.kind = LiveQuery::Kind::snapshot;
                 live_result.number = draw(~0U);
                 live_result.result.pair = draw(100);
-                live_result.result.reason = StopReason::predicted;
+                live_result.result.reason = StopReason::left_cap;
+                live_result.result.has_cap = draw(2) == 0;
+                live_result.result.is_held = draw(2) == 0;
+                live_result.result.cap_order = {static_cast<std::uint8_t>(draw(251)),
+                                                static_cast<std::uint8_t>(draw(256))};
+                live_result.result.cap_fact = {static_cast<CapBreak>(draw(4)), draw(16)};
                 live_result.done_us = static_cast<std::int64_t>(random_());
                 return live_result;
             case 5:

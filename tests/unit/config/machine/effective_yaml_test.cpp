@@ -68,6 +68,7 @@ TEST(EffectiveYaml, OfOtherFormatsAndSectionsReadsBackToTheSame) {
     expect_same(test::with(test::kSmallMachine, "free_jerk: any",
                            "free_jerk: any, stop_reversal: jerk_limited, limits_broken: report, "
                            "obeyed_by: line"));
+    expect_same(test::with(test::kSmallMachine, "free_jerk: any", "free_jerk: any, cap: all_axes"));
     expect_same(test::with_can(paper, "  format: fd\n  ahead: {samples: 300}\n"));
     expect_same(test::with(paper, "hashes: required", "hashes: none"));
     expect_same(test::with(paper, "name: paper-trunnion", "name: 'it''s #1: \"a\\b\"'"));

@@ -100,6 +100,11 @@ TEST(MachineGuard, EachKeyArrivesAndIsPartOfTheHash) {
     EXPECT_NE(effective_text(farther), effective_text(proven)) << "limits used are hashed";
     EXPECT_EQ(changed({"free_jerk: any", "free_jerk: any, questions: 64"}).cycle.queries, 64U);
     EXPECT_TRUE(changed({"speed_cap: false", "speed_cap: true"}).guard.speed_cap);
+    EXPECT_EQ(changed({"speed_cap: false", "speed_cap: false, cap: all_axes"}).guard.cap,
+              CapPromise::all_axes);
+    EXPECT_EQ(
+        loaded(with(kSmallMachine, "speed_cap: false", "speed_cap: false, cap: none")).guard.cap,
+        CapPromise::none);
     EXPECT_EQ(changed({"cap_lead_ms: 20", "cap_lead_ms: 7.5"}).guard.cap_lead_s, 7.5e-3);
     EXPECT_EQ(changed({"level_band_mm: 0.5", "level_band_mm: 0.25"}).guard.level_band_mm, 0.25);
     EXPECT_EQ(changed({"level_hold_samples: 50", "level_hold_samples: 7"}).guard.level_hold_samples,
@@ -354,6 +359,32 @@ TEST(MachineGuard, AnAxisMayHaveNoLimitOfJerk) {
                   .find("guard.free_jerk: invalid value (found limited, and axis X without a jerk "
                         "limit, expected any, or a number for jerk_... of that axis"),
               std::string::npos);
+}
+
+// A cap needs a permit that orders it, a sample that acknowledges it, and a longer permit.
+TEST(MachineGuard, ACapIsRefusedWhereNothingWouldKeepIt) {
+    const std::string capped =
+        with(kSmallMachine, "speed_cap: false", "speed_cap: false, cap: all_axes");
+    EXPECT_EQ(
+        faults_of(with(capped, "cap: all_axes", "cap: per_axis")),
+        "m:36: guard.cap: invalid value (found per_axis, expected none or all_axes; the guard "
+        "does not choose single axes yet).\n");
+    EXPECT_EQ(
+        faults_of(
+            with(capped, "  stale_after_us: 3000\n", "  stale_after_us: 3000\n  permit: 1\n")),
+        "m:37: guard.cap: invalid value (found all_axes with can.permit: 1, expected none, or "
+        "permit: 2; no proof may use the cap of a permit of version 1).\n");
+    EXPECT_EQ(faults_of(with(capped, "  stale_after_us: 3000\n",
+                             "  stale_after_us: 12000\n  permit_samples: 10\n")),
+              "m:37: guard.cap: invalid value (found all_axes with one number as "
+              "can.permit_samples, expected none, or two numbers, such as [3, 12]; the cap falls "
+              "where the longer permit is not proven).\n");
+    const std::string ahead = test::with_can(
+        with(test::content_of(test::kPaperMachine), "\nguard:\n", "\nguard:\n  cap: all_axes\n"),
+        "  format: fd\n  ahead: {samples: 300}\n");
+    EXPECT_NE(faults_of(ahead).find("guard.cap: invalid value (found all_axes with can.ahead, "),
+              std::string::npos)
+        << faults_of(ahead);
 }
 
 TEST(MachineGuard, WordsOfTheFaults) {

@@ -112,7 +112,7 @@ TEST(MachinePage, TheGuardSectionShownIsTheDefault) {
     const std::size_t begin = whole.find("\nguard:");
     for (const char* key :
          {"promise", "board_reaction_ms", "latch_jitter_us", "free_jerk", "obeyed_by",
-          "stop_reversal", "limits_broken", "travel_enforced", "speed_cap", "cap_lead_ms",
+          "stop_reversal", "limits_broken", "travel_enforced", "speed_cap", "cap_lead_ms", "cap",
           "travel_proofs", "overrun_mm", "overrun_deg", "slow_mm", "warn_mm", "level_band_mm",
           "level_hold_samples"}) {
         EXPECT_NE(whole.find(std::string("\n  ") + key + ": ", begin), std::string::npos) << key;

@@ -113,6 +113,61 @@ TEST(AckLedger, IsNotBehindABoardThatNamesRecentPermitsAlone) {
     EXPECT_EQ(cap_of(ledger.note_recent_ack(116 % 16)), 10);
 }
 
+// u may have been as high as any permit allowed that was named, or sent since, 16 samples ago.
+TEST(AckLedger, ASampleKnowsTheHighestCapOfSixteenSamples) {
+    AckLedger ledger;
+    send(ledger, 1, 1, 200);
+    EXPECT_EQ(ledger.note_sample({}).since, rapid_caps());
+    CapFacts facts = ledger.note_sample(1);
+    EXPECT_EQ(facts.status, AckStatus::known);
+    EXPECT_EQ(facts.acked, equal_caps(200));
+    EXPECT_EQ(facts.since, rapid_caps()) << "not every one of 17 samples names a permit";
+    for (unsigned i = 2; i <= 18; ++i) {
+        send(ledger, i, i, 40);
+        facts = ledger.note_sample(i % 16);
+        EXPECT_EQ(facts.acked, equal_caps(40));
+        const bool is_whole = i >= 17;
+        EXPECT_EQ(facts.since, is_whole && i < 18 ? equal_caps(200)
+                               : is_whole         ? equal_caps(40)
+                                                  : rapid_caps())
+            << i;
+    }
+    send(ledger, 19, 19, 90);
+    EXPECT_EQ(ledger.note_sample(18 % 16).since, equal_caps(90)) << "it may be in force already";
+    EXPECT_EQ(ledger.note_sample(1).status, AckStatus::unknown);
+}
+
+// A board names a permit first within 15 samples, and then for as long as it slows down.
+TEST(AckLedger, ANewNumberIsOneOfTheNewestPermits) {
+    AckLedger ledger;
+    send(ledger, 15, 20, 200);
+    EXPECT_EQ(ledger.note_sample(20 % 16).acked, equal_caps(200));
+    for (unsigned i = 21; i <= 115; ++i) {
+        send(ledger, i, i, 60);
+        EXPECT_EQ(ledger.note_sample(20 % 16).acked, equal_caps(200)) << "it may still be that one";
+    }
+    EXPECT_EQ(ledger.note_sample(115 % 16).acked, equal_caps(60));
+    EXPECT_EQ(ledger.behind(), 0U) << "and nothing is left behind";
+    send(ledger, 116, 116, 100);
+    for (unsigned i = 117; i <= 132; ++i) {
+        send(ledger, i, i, 60);
+    }
+    EXPECT_EQ(ledger.note_sample(116 % 16).acked, equal_caps(60)) << "132, not 116";
+}
+
+// The sample that named it first may be one that was lost.
+TEST(AckLedger, AfterLostSamplesANewNumberMayBeAnOlderPermit) {
+    AckLedger ledger;
+    send(ledger, 1, 1, 40);
+    EXPECT_EQ(ledger.note_sample(1).acked, equal_caps(40));
+    send(ledger, 2, 3, 40);
+    send(ledger, 4, 4, 100);
+    send(ledger, 5, 20, 40);
+    AckLedger lost = ledger;
+    EXPECT_EQ(ledger.note_sample(4).acked, equal_caps(40)) << "20";
+    EXPECT_EQ(lost.note_sample(4, 4).acked, equal_caps(100)) << "4 or 20";
+}
+
 TEST(AckLedger, RemembersBeyondWhatItKeeps) {
     AckLedger ledger;
     send(ledger, 250, 260, kCapRapid);  // the counter wraps

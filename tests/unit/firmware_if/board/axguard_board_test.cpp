@@ -114,6 +114,60 @@ TEST_F(AxguardBoard, EachRefusalOfAFrameHasItsName) {
     }
 }
 
+// Rule (i): the low bits of a permit come again after sixteen, so one is named first within fifteen
+// samples; then for as long as the axes slow down.
+TEST(AxguardBoardCap, APermitIsNamedWhileTheAxesSlowDown) {
+    BoardFixture fixture(AXG_BOARD_CAP_ENFORCED);
+    fixture.begin();
+    axg_board_caps bound{};
+    std::memset(bound.of, 250, sizeof bound.of);
+    (void)axg_board_keeps(&fixture.board, &bound, fixture.instant_of(3) + 600);
+    axg_board_says says{};
+    says.mode = 1;
+    says.is_homed = true;
+    for (std::uint32_t number = 4; number < 40; ++number) {
+        (void)fixture.latch(number);
+        EXPECT_EQ(axg_board_flags(&fixture.board, &says), 4U | 4U << 4U) << number;
+        (void)fixture.hear({.number = number,
+                            .live = static_cast<std::uint8_t>(number + 1),
+                            .cap = 20,
+                            .mask = 255},
+                           fixture.instant_of(number) + 100);
+    }
+    std::memset(bound.of, 20, sizeof bound.of);
+    (void)axg_board_keeps(&fixture.board, &bound, fixture.instant_of(39) + 600);
+    (void)fixture.latch(40);
+    EXPECT_EQ(axg_board_flags(&fixture.board, &says), 4U | (40U & 15U) << 4U);
+}
+
+TEST(AxguardBoardCap, APermitOfMoreThanFifteenSamplesAgoIsNotNamedFirst) {
+    axg_board_says says{};
+    says.is_homed = true;
+    for (const std::uint32_t late : {15U, 16U}) {
+        BoardFixture fixture(AXG_BOARD_CAP_ENFORCED);
+        fixture.arm();
+        axg_board_caps bound{};
+        std::memset(bound.of, 250, sizeof bound.of);
+        for (std::uint32_t number = 0; number < 4; ++number) {
+            (void)fixture.latch(number);
+            (void)fixture.hear({.number = number, .live = static_cast<std::uint8_t>(number + 1)},
+                               fixture.instant_of(number) + 100);
+            (void)axg_board_keeps(&fixture.board, &bound, fixture.instant_of(number) + 600);
+        }
+        (void)fixture.latch(4);
+        (void)fixture.hear({.number = 4, .live = 5, .cap = 20, .mask = 255},
+                           fixture.instant_of(4) + 100);
+        for (std::uint32_t number = 5; number < 4 + late; ++number) {
+            (void)fixture.latch(number);
+            EXPECT_EQ(axg_board_flags(&fixture.board, &says), 4U | 4U << 4U) << number;
+        }
+        std::memset(bound.of, 20, sizeof bound.of);
+        (void)axg_board_keeps(&fixture.board, &bound, fixture.instant_of(3 + late) + 600);
+        (void)fixture.latch(4 + late);
+        EXPECT_EQ(axg_board_flags(&fixture.board, &says), late == 15 ? 4U | 5U << 4U : 0U);
+    }
+}
+
 // Rule (iii)
 TEST(AxguardBoardCap, APermitWhoseSampleWasFasterThanItsProofIsRefusedForItsCap) {
     BoardFixture fixture(AXG_BOARD_CAP_ENFORCED);

@@ -192,7 +192,7 @@ TEST_F(BlackBoxDumpTest, OneOfAnotherVersionNamesBoth) {
     dump.close();
     EXPECT_EQ(BlackBoxFile::open(path).error(),
               path +
-                  ":0: invalid file (found a black box of version 4, expected version 7). Use the "
+                  ":0: invalid file (found a black box of version 4, expected version 8). Use the "
                   "axguard version of the axguardd that wrote it.");
 }
 

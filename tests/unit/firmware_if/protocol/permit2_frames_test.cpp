@@ -100,6 +100,18 @@ TEST(Permit2Frames, TheSpeedCapIsAdviceForAllAxes) {
     EXPECT_EQ(permit2_of(result, 1, 1).cap, 1);
 }
 
+// What was proven with a cap is sent with it, hold too; the advice of the same cycle is not.
+TEST(Permit2Frames, AnEnforcedCapIsWhatWasProven) {
+    CycleResult result{.has_permit = true};
+    result.advisories.speed_cap = 60;
+    result.has_cap = true;
+    EXPECT_EQ(permit2_of(result, 1, 1).cap, kPermitCapNone);
+    EXPECT_EQ(permit2_of(result, 1, 1).mask, 0);
+    result.cap_order = {.cap = 0, .mask = 0xFF};
+    EXPECT_EQ(permit2_of(result, 1, 1).cap, 0);
+    EXPECT_EQ(permit2_of(result, 1, 1).mask, 0xFF);
+}
+
 TEST(Permit2Frames, ACycleWithoutAPermitHasNoSamples) {
     const Permit2 stop = permit2_of({.samples = 3}, 1, 2);
     EXPECT_EQ(stop.word, PermitWord::stop);

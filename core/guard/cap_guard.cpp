@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/guard/cap_guard.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/assert.hpp"
+#include "core/base/sincos.hpp"
+#include "core/certificate/permit_ladder.hpp"
+
+namespace axg {
+namespace {
+
+// Periods of loss and delay on the way of an order and of its acknowledgement.
+constexpr double kAnswerPeriods = 15;
+
+double speed_of(const Axis& axis, std::uint8_t cap) noexcept {
+    return capped_speed(axis, cap / double{kCapRapid});
+}
+
+}  // namespace
+
+double cap_answer_seconds(const Machine& machine) noexcept {
+    double slowest_s = 0;
+    for (const Axis& axis : machine.axes) {
+        const double ramp_s = has_jerk_limit(axis) ? axis.acceleration_max / axis.jerk_max : 0;
+        slowest_s = std::max(slowest_s, axis.speed_max / axis.acceleration_max + ramp_s);
+    }
+    // A planner that averages its commands has half of the acceleration.
+    return machine.guard.cap_lead_s + 2 * slowest_s + kAnswerPeriods * machine.can.sample_us * 1e-6;
+}
+
+AxisCaps CapGuard::bound_caps(const CapOrder& order) const noexcept {
+    return higher_caps(facts_.acked, caps_of_permit(order.cap, order.mask));
+}
+
+/// The board may keep more than was ordered: it still slows down.
+bool CapGuard::is_above() const noexcept {
+    const AxisCaps ordered = caps_of_permit(control_.order().cap, control_.order().mask);
+    return higher_caps(ordered, facts_.acked) != ordered;
+}
+
+bool CapGuard::asks_raise() const noexcept {
+    return facts_.status == AckStatus::known && !is_above() && control_.asks_raise(latched_us_);
+}
+
+/// Since an earlier sample it has come farther than any cap allows that may have been in force.
+bool CapGuard::is_too_fast(std::uint32_t axis, const Seen& before) const noexcept {
+    const Axis& of = machine_->axes[axis];
+    const Seen& last = seen_[(seen_count_ - 1) % kSeen];
+    const double speed = speed_of(of, facts_.since[axis]);
+    const double time_s =
+        static_cast<double>(last.sample - before.sample) * machine_->can.sample_us * 1e-6;
+    const double most =
+        speed * (time_s * (1 + kPeriodShare) + machine_->guard.latch_jitter_s) + 2 * error_[axis];
+    double way = std::fabs(last.position[axis] - before.position[axis]);
+    if (of.unlimited) {
+        way = std::fabs(way - 2 * kPi * std::round(way / (2 * kPi)));
+        return most < 0.99 * kPi && way > most;
+    }
+    return way > most;
+}
+
+/// Over one period and over more: the longer, the less do the errors of two samples hide.
+void CapGuard::watch_speeds() noexcept {
+    const std::uint64_t newest = seen_count_ - 1;
+    for (const std::uint64_t back : {1U, 4U, kSeen - 1}) {
+        for (std::uint32_t i = 0; back <= newest && i < machine_->axes.size(); ++i) {
+            if (facts_.since[i] < kCapRapid && is_too_fast(i, seen_[(newest - back) % kSeen])) {
+                broken_ = {.kind = CapBreak::too_fast, .axis = i};
+                return;
+            }
+        }
+    }
+}
+
+/// An order to slow down has its time; each further one begins it anew.
+void CapGuard::watch_answer() noexcept {
+    const double waited_s = static_cast<double>(latched_us_ - fell_us_) * 1e-6;
+    if (broken_.kind == CapBreak::none && is_above() && waited_s > cap_answer_seconds(*machine_)) {
+        broken_ = {.kind = CapBreak::not_acknowledged};
+    }
+}
+
+void CapGuard::note(const AxisSnapshot& snapshot, const CapFacts& facts, bool is_first,
+                    const std::array<double, kAxesMax>& error) noexcept {
+    if (!is_on()) {
+        return;
+    }
+    facts_ = facts;
+    latched_us_ = snapshot.latched_us;
+    error_ = error;
+    seen_count_ = is_first ? 0 : seen_count_;
+    seen_[seen_count_++ % kSeen] = {.sample = snapshot.sample, .position = snapshot.position};
+    if (facts.status == AckStatus::unknown) {
+        broken_ = {.kind = CapBreak::unknown_permit};
+    } else if (broken_.kind == CapBreak::none) {
+        watch_speeds();
+    }
+}
+
+void CapGuard::bound(StopCertificate& certificate) const noexcept {
+    if (!is_on()) {
+        return;
+    }
+    std::array<double, kAxesMax> speeds{};
+    const auto speeds_at = [&](const AxisCaps& caps) {
+        for (std::size_t i = 0; i < machine_->axes.size(); ++i) {
+            speeds[i] = speed_of(machine_->axes[i], caps[i]);
+        }
+        return std::span<const double>(speeds.data(), machine_->axes.size());
+    };
+    certificate.bound_speeds(speeds_at(bound_caps(control_.order())));
+    if (asks_raise()) {
+        const CapOrder raised{.cap = control_.raised_cap(), .mask = control_.order().mask};
+        certificate.ask_raise(speeds_at(bound_caps(raised)));
+    }
+}
+
+/// Whatever it orders was proven: the bounds of the proof were no lower.
+void CapGuard::order_next(const StopCycle& cycle, const std::uint8_t* wanted) noexcept {
+    const CapOrder before = control_.order();
+    const bool has_raise = asks_raise();
+    const bool is_raise_proven = has_raise && cycle.is_longer_proven;
+    const AxisCaps proven = bound_caps(
+        is_raise_proven ? CapOrder{.cap = control_.raised_cap(), .mask = before.mask} : before);
+    // In place of the cap in force a raise was asked about: that is done only where the cap was
+    // proven for long. And while the board still slows down, what is not proven of the speeds that
+    // it may have is no reason to order less.
+    const bool is_slowing = is_above();
+    const std::uint8_t wish = wanted != nullptr ? *wanted : before.cap;
+    const CapOrder order =
+        control_.update({.sample_us = latched_us_,
+                         .wanted = is_slowing ? std::min(wish, before.cap) : wish,
+                         .is_proven = has_raise || is_slowing || cycle.is_longer_proven,
+                         .is_raise_proven = is_raise_proven,
+                         .is_raise_asked = has_raise});
+    AXG_ASSERT(higher_caps(proven, bound_caps(order)) == proven);
+    const AxisCaps was = caps_of_permit(before.cap, before.mask);
+    const AxisCaps is = caps_of_permit(order.cap, order.mask);
+    fell_us_ = higher_caps(was, is) != is ? latched_us_ : fell_us_;
+}
+
+void CapGuard::judge(const StopCycle& cycle, const std::uint8_t* wanted, bool is_armed,
+                     CycleResult& result) noexcept {
+    if (!is_on()) {
+        return;
+    }
+    if (!is_armed) {  // nothing is ordered any more: from the next proof on, every axis is at rapid
+        result.has_permit = result.has_permit && control_.order().cap == kCapRapid;
+        control_ = CapControl(machine_->guard.cap);
+    } else if (!cycle.is_jog) {
+        watch_answer();
+        if (broken_.kind != CapBreak::none && !result.is_stop) {
+            result.has_permit = false;
+            result.is_stop = true;
+            result.reason = StopReason::left_cap;
+            result.pair = kNoIndex;
+            result.cap_fact = broken_;
+        }
+        if (result.has_permit && cycle.is_settled) {
+            order_next(cycle, wanted);
+        }
+    }
+    broken_ = {};
+    result.has_cap = true;
+    result.cap_order = control_.order();
+    result.is_held = is_armed && control_.is_held(latched_us_);
+}
+
+}  // namespace axg

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// A board that keeps its caps is never stopped for them; one that does not is, with its reason. The
+// whole in closed loop: tests/oracle/hil_replay/drive/enforced_cap_test.cpp.
+#include "core/guard/cap_guard.hpp"
+
+#include <gtest/gtest.h>
+
+#include <optional>
+
+namespace axg {
+namespace {
+
+constexpr double kErrorMm = 0.005;
+
+Machine capped_machine(CapPromise promise = CapPromise::all_axes) {
+    Machine machine;
+    machine.axes.resize(2);
+    for (Axis& axis : machine.axes) {
+        axis.speed_max = 500;
+        axis.acceleration_max = 4000;
+        axis.jerk_max = 50'000;
+    }
+    machine.guard.cap = promise;
+    machine.can.permit_samples = {3, 12};
+    return machine;
+}
+
+CapFacts facts_at(std::uint8_t acked) {
+    CapFacts facts;
+    facts.status = AckStatus::known;
+    facts.acked = facts.since = caps_of_permit(acked, 0xFF);
+    return facts;
+}
+
+struct Bench {
+    explicit Bench(CapPromise promise = CapPromise::all_axes)
+        : machine(capped_machine(promise)), guard(machine) {}
+
+    /// One sample further, the second axis by so much.
+    CycleResult step(const CapFacts& facts, double step_mm, bool is_longer_proven = true,
+                     bool is_armed = true) {
+        ++snapshot.sample;
+        snapshot.latched_us += 1000;
+        snapshot.axis_count = 2;
+        snapshot.position[1] += step_mm;
+        std::array<double, kAxesMax> errors{};
+        errors.fill(kErrorMm);
+        guard.note(snapshot, facts, false, errors);
+        CycleResult result;
+        result.has_permit = true;
+        const std::uint8_t wanted = kCapRapid;
+        guard.judge({.status = SnapshotStatus::ok,
+                     .is_settled = true,
+                     .samples = 10,
+                     .is_longer_proven = is_longer_proven},
+                    &wanted, is_armed, result);
+        return result;
+    }
+    /// So many; the first result that stops.
+    std::optional<CycleResult> steps(int count, const CapFacts& facts, double step_mm) {
+        for (int i = 0; i < count; ++i) {
+            const CycleResult result = step(facts, step_mm);
+            if (result.is_stop) {
+                return result;
+            }
+        }
+        return {};
+    }
+
+    Machine machine;
+    CapGuard guard;
+    AxisSnapshot snapshot;
+};
+
+TEST(CapGuard, OrdersLessWhereTheLongerPermitIsNotProven) {
+    Bench bench;
+    CycleResult result = bench.step(facts_at(kCapRapid), 0);
+    EXPECT_TRUE(result.has_cap);
+    EXPECT_EQ(result.cap_order.cap, kCapRapid);
+    result = bench.step(facts_at(kCapRapid), 0, false);
+    EXPECT_TRUE(result.has_permit);
+    EXPECT_EQ(result.cap_order.cap, 187);
+    EXPECT_EQ(result.cap_order.mask, 0xFF);
+    EXPECT_EQ(bench.step(facts_at(kCapRapid), 0, false, false).cap_order.cap, kCapRapid)
+        << "not armed, nothing is ordered";
+}
+
+TEST(CapGuard, AResultOfACapThatIsNoLongerOrderedHasNoPermit) {
+    Bench bench;
+    bench.step(facts_at(kCapRapid), 0, false);
+    EXPECT_FALSE(bench.step(facts_at(kCapRapid), 0, true, false).has_permit);
+    EXPECT_TRUE(bench.step(facts_at(kCapRapid), 0, true, false).has_permit);
+}
+
+TEST(CapGuard, WithoutAPromiseItIsSilent) {
+    Bench bench(CapPromise::none);
+    const CycleResult result = bench.step(facts_at(1), 400, false);
+    EXPECT_FALSE(result.has_cap);
+    EXPECT_TRUE(result.has_permit);
+}
+
+// 25 of 250 of 500 mm/s: 0.05 mm a period, and 0.01 mm of the errors of two samples.
+TEST(CapGuard, AnAxisThatIsFasterThanItsCapIsSeen) {
+    Bench kept;
+    EXPECT_FALSE(kept.steps(500, facts_at(25), 0.05));
+    Bench broken;
+    const auto stop = broken.steps(17, facts_at(25), 0.0525);
+    ASSERT_TRUE(stop);
+    EXPECT_EQ(stop->reason, StopReason::left_cap);
+    EXPECT_EQ(stop->cap_fact.kind, CapBreak::too_fast);
+    EXPECT_EQ(stop->cap_fact.axis, 1U);
+    EXPECT_FALSE(stop->has_permit);
+    Bench fast;
+    EXPECT_TRUE(fast.steps(2, facts_at(25), 0.07)) << "within a period";
+    Bench unbound;
+    EXPECT_FALSE(unbound.steps(100, CapFacts{}, 0.5)) << "rapid, which limits_broken watches";
+}
+
+TEST(CapGuard, AnOrderThatIsNotAcknowledgedInTimeStops) {
+    Bench bench;
+    bench.step(facts_at(kCapRapid), 0, false);
+    const int most = static_cast<int>(cap_answer_seconds(bench.machine) * 1e3);
+    for (const bool in_time : {true, false}) {
+        const auto stop = bench.steps(in_time ? most - 1 : 3, facts_at(kCapRapid), 0);
+        ASSERT_EQ(stop.has_value(), !in_time);
+        if (stop) {
+            EXPECT_EQ(stop->reason, StopReason::left_cap);
+            EXPECT_EQ(stop->cap_fact.kind, CapBreak::not_acknowledged);
+        }
+    }
+}
+
+TEST(CapGuard, APermitThatWasNeverSentStops) {
+    Bench bench;
+    CapFacts facts;
+    facts.status = AckStatus::unknown;
+    EXPECT_FALSE(bench.step(facts, 0, true, false).is_stop);
+    const CycleResult stop = bench.step(facts, 0);
+    EXPECT_TRUE(stop.is_stop);
+    EXPECT_EQ(stop.cap_fact.kind, CapBreak::unknown_permit);
+    EXPECT_FALSE(bench.step(facts_at(kCapRapid), 0).is_stop) << "said once";
+}
+
+}  // namespace
+}  // namespace axg
