@@ -14,9 +14,9 @@ import sys
 
 from sources import finish, read_text, tracked_files
 
-# Pages, most words of all of them: a limit against growth. The first four sum to 45,000.
+# Pages, most words of all of them: a limit against growth. The first four sum to 45,300.
 SHELVES = {
-    "guide": (["README.md", "docs/guide/*"], 8_250),
+    "guide": (["README.md", "docs/guide/*"], 8_550),
     "theory": (["docs/theory/*"], 12_650),
     "reference": (["docs/reference/*"], 16_550),
     "measurements and decisions": (["docs/measurements/*", "docs/decisions/*"], 7_550),
