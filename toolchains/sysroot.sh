@@ -12,14 +12,14 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 target=$root/build/sysroot-arm64
 # What setup.sh installs for this machine, and the C and C++ libraries.
 packages=(libc6-dev libstdc++-12-dev libeigen3-dev libyaml-cpp-dev libcli11-dev libfmt-dev
-          nlohmann-json3-dev libmd-dev libmeshoptimizer-dev zlib1g-dev libgmp-dev libgtest-dev
-          librapidcheck-dev)
+          nlohmann-json3-dev libmd-dev libmeshoptimizer-dev libmicrohttpd-dev zlib1g-dev libgmp-dev
+          libgtest-dev librapidcheck-dev)
 case ${1:-} in
     '') ;;
     --guest)
         target=$root/build/guest-arm64
         packages=(linux-image-arm64 python3 can-utils iproute2 dash coreutils libstdc++6
-                  libgmpxx4ldbl libmeshoptimizer2d)
+                  libgmpxx4ldbl libmeshoptimizer2d libmicrohttpd12)
         ;;
     *) sed -n '3,9p' "$0" >&2; exit 2 ;;
 esac

@@ -9,6 +9,7 @@
 #include "firmware_if/cli/command_line.hpp"
 #include "hil_replay/commands/commands.hpp"
 #include "hil_replay/commands/start_lab.hpp"
+#include "hil_replay/commands/watch_command.hpp"
 
 namespace axg {
 namespace {
@@ -35,6 +36,7 @@ int run_axguard(std::vector<std::string> words) {
     add_replay(line);
     add_drive(line);
     add_inspect(line);
+    add_watch(line);
     return line.parse_command(std::move(words), "Run axguard demo for an example.");
 }
 

@@ -5,17 +5,15 @@
 
 #include <array>
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <optional>
 
 #include "firmware_if/cli/whole_file.hpp"
+#include "hil_replay/page/page_parts.hpp"
 
 namespace axg {
 namespace {
 
-constexpr const char* kScripts = "/usr/share/javascript/";  // where Debian has them
 constexpr std::array kLibraries = {
     "three/three.min.js", "three/examples/js/controls/OrbitControls.js", "dygraphs/dygraph.min.js"};
 constexpr const char* kLibraryStyle = "dygraphs/dygraph.min.css";
@@ -31,18 +29,6 @@ void append_script(std::string& page, const std::string& text) {
         body.replace(at, 2, "<\\/");
     }
     page += "<script>\n" + body + "\n</script>\n";
-}
-
-/// The file's text, or nothing: `messages` says why, and what to do.
-std::optional<std::string> read_part(const std::string& path, const char* what_next,
-                                     std::FILE* messages) {
-    std::ifstream file(path, std::ios::binary);
-    std::string text(std::istreambuf_iterator<char>(file), {});
-    if (!file.is_open() || file.bad() || text.empty()) {
-        fmt::print(messages, "{}: cannot be read; {}\n", path, what_next);
-        return std::nullopt;
-    }
-    return text;
 }
 
 }  // namespace
@@ -61,12 +47,9 @@ std::string printed_text(const std::function<void(std::FILE*)>& print) {
 }
 
 bool write_run_page(const std::string& path, const RunPage& page, std::FILE* messages) {
-    const auto own = [messages](const char* name) {
-        return read_part(std::string(AXG_DATA_DIR) + "/hil_replay/page/" + name,
-                         "it is part of axguard: install axguard again", messages);
-    };
+    const auto own = [messages](const char* name) { return own_part(name, messages); };
     const auto library = [messages](const char* name) {
-        return read_part(std::string(kScripts) + name, kInstall, messages);
+        return library_part(name, kInstall, messages);
     };
     const std::optional<std::string> head = own("page.html"), style = own("page.css"),
                                      library_style = library(kLibraryStyle);

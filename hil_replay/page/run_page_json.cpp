@@ -11,6 +11,7 @@
 
 #include "core/base/sincos.hpp"
 #include "firmware_if/setup/surface_list.hpp"
+#include "hil_replay/page/page_parts.hpp"
 #include "hil_replay/page/run_page.hpp"
 #include "hil_replay/replay/replay_csv.hpp"
 
@@ -136,7 +137,35 @@ nlohmann::ordered_json times_json(const TimeHistogram* cycles) {
     return bars;
 }
 
+/// As it may stand within a script of a page: no name may close it.
+std::string safe_in_script(const std::string& text) {
+    std::string safe;
+    safe.reserve(text.size());
+    for (const char c : text) {
+        c == '<' ? void(safe += "\\u003c") : void(safe += c);
+    }
+    return safe;
+}
+
+/// The surfaces that triangles are found in.
+void append_surfaces(const LoadedMachine& loaded, std::string& text) {
+    const SurfaceList surfaces = surface_list(loaded);
+    text += ",\"body_meshes\":";
+    append_meshes(surfaces.bodies(), text);
+    text += ",\"tool_meshes\":";
+    append_meshes(surfaces.tools(), text);
+}
+
 }  // namespace
+
+std::string machine_data(const LoadedMachine& loaded) {
+    const nlohmann::ordered_json head{{"machine", machine_json(loaded)}};
+    std::string text = head.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+    text.pop_back();  // its closing brace
+    append_surfaces(loaded, text);
+    text += '}';
+    return safe_in_script(text);
+}
 
 std::string page_data(const RunPage& page) {
     const nlohmann::ordered_json head{
@@ -151,21 +180,11 @@ std::string page_data(const RunPage& page) {
     text.pop_back();  // its closing brace: what is long follows, without a tree of numbers
     text += ",\"stops\":" + page.stops;
     text += ",\"cycle_times_us\":" + times_json(page.cycles).dump();
-    // The surfaces that triangles were found in.
-    const SurfaceList surfaces = surface_list(page.loaded);
-    text += ",\"body_meshes\":";
-    append_meshes(surfaces.bodies(), text);
-    text += ",\"tool_meshes\":";
-    append_meshes(surfaces.tools(), text);
+    append_surfaces(page.loaded, text);
     text += ",\"samples\":";
     append_samples(page.samples, text);
     text += '}';
-    std::string safe;  // no name may close the script that the data stands in
-    safe.reserve(text.size());
-    for (const char c : text) {
-        c == '<' ? void(safe += "\\u003c") : void(safe += c);
-    }
-    return safe;
+    return safe_in_script(text);
 }
 
 }  // namespace axg

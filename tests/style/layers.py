@@ -57,6 +57,7 @@ LIBRARIES = {  # library -> the only folder that may know it (tests beside)
     "rapidcheck": set(),
     "CGAL/": set(),
     "nlohmann/": {"hil_replay", "firmware_if"},
+    "microhttpd": {"hil_replay"},
 }
 SLOW = {  # library that takes seconds to compile -> the only files that may include it
     "CLI/": re.compile(r"firmware_if/cli/command_line\.cpp"),

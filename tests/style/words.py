@@ -14,12 +14,12 @@ import sys
 
 from sources import finish, read_text, tracked_files
 
-# Pages, most words of all of them: a limit against growth. The first four sum to 45,000.
+# Pages, most words of all of them: a limit against growth. The first four sum to 48,300.
 SHELVES = {
-    "guide": (["README.md", "docs/guide/*"], 8_500),
-    "theory": (["docs/theory/*"], 12_650),
-    "reference": (["docs/reference/*"], 18_050),
-    "measurements and decisions": (["docs/measurements/*", "docs/decisions/*"], 8_050),
+    "guide": (["README.md", "docs/guide/*"], 8_900),
+    "theory": (["docs/theory/*"], 12_900),
+    "reference": (["docs/reference/*"], 18_400),
+    "measurements and decisions": (["docs/measurements/*", "docs/decisions/*"], 8_400),
     "rules": (["CONTRIBUTING.md", "docs/glossary.md", "docs/style.md"], 3_760),
 }
 PARAGRAPH_WORDS_MAX = 120

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Frames of the guard as a display reads them: shape, checksum and ranges, no age and no order. A
+// board judges permits by its own rules (firmware_if/board). Bytes: docs/reference/board.md.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "core/machine/can_layout.hpp"
+#include "firmware_if/can/can_frame.hpp"
+#include "firmware_if/protocol/hints_frame.hpp"
+#include "firmware_if/protocol/operator_frames.hpp"
+#include "firmware_if/protocol/permit2_frames.hpp"
+
+namespace axg {
+
+/// A pair of frames with a permit of version 2.
+struct SeenPermit2 {
+    Permit2 permit;  // nonce and lap stay 0: the frames answer for them, and do not show them
+    std::uint16_t answer = 0;
+};
+/// Nothing: no pair, or values that no guard sends.
+[[nodiscard]] std::optional<SeenPermit2> read_permit2(const CanLayout& layout,
+                                                      const CanFrame& plain,
+                                                      const CanFrame& twin) noexcept;
+/// The answer of a right permit with this nonce and lap.
+[[nodiscard]] std::uint16_t answer_of(const CanLayout& layout, const Permit2& permit) noexcept;
+
+[[nodiscard]] std::optional<Hints> read_hints(const CanLayout& layout,
+                                              const CanFrame& frame) noexcept;
+
+[[nodiscard]] std::optional<OperatorStatus> read_operator_status(const CanLayout& layout,
+                                                                 const CanFrame& frame) noexcept;
+
+}  // namespace axg

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// One state of the live page: what is known of guard, board and machine at one instant, and the
+// words that a person reads first. As JSON it is what the page takes.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/machine/machine.hpp"
+#include "hil_replay/watch/bus_view.hpp"
+
+namespace axg {
+
+// A guard beats every 10 ms, also while it is stopped; its status is read five times a second.
+inline constexpr std::int64_t kGuardSilentUs = 250'000;
+inline constexpr std::int64_t kStatusOldUs = 2'500'000;
+inline constexpr std::int64_t kStatusEveryUs = 200'000;
+
+/// The line of the status socket, read and checked.
+struct GuardLine {
+    std::string phase, cause, reason, withheld, withheld_reason;  // names; "none", "nothing"
+    std::string pair, withheld_pair;                              // "a - b"; empty: none
+    std::string bus, machine, configuration, version, mode;
+    bool has_view = false;  // the keys of a guard whose bus thread turns
+    bool stands = false, is_confirmed = false;
+    std::uint64_t age_ms = 0, phase_ms = 0, permits = 0, samples = 0, late = 0, lost = 0;
+};
+/// "a - b", as the status line has it.
+[[nodiscard]] std::string words_of_pair(const Machine& machine, std::uint32_t pair);
+
+/// Nothing: no line of this version.
+[[nodiscard]] std::optional<GuardLine> read_guard_line(std::string_view line);
+
+struct WatchInput {
+    const Machine& machine;
+    std::string_view configuration;  // hash of the machine file that the page shows
+    const BusState* bus = nullptr;   // null: the bus is not read
+    std::string_view bus_name = {};
+    std::string_view bus_fault = {};  // why it cannot be read now; empty: it can
+    bool reads_status = false;
+    std::optional<GuardLine> status{};    // of the last line that was read
+    std::int64_t status_us = kNeverSeen;  // when
+    std::string_view status_fault = {};   // why the last reading failed; empty: it did not
+    std::int64_t now_us = 0;
+    std::uint64_t number = 0;  // of this state
+};
+
+/// The state in a word, for colours and marks: "armed", "ready", "selftest", "init", "running",
+/// "stopped", "unreachable".
+struct WatchHeadline {
+    std::string kind, text;
+    std::optional<std::int64_t> since_ms;
+};
+[[nodiscard]] WatchHeadline headline_of(const WatchInput& input);
+
+/// What a person has to know besides: machine files that differ, a bus that is down, garbage.
+[[nodiscard]] std::vector<std::string> notes_of(const WatchInput& input);
+
+/// In ASCII, one line.
+[[nodiscard]] std::string watch_json(const WatchInput& input);
+
+}  // namespace axg
