@@ -245,8 +245,8 @@ def hex_colour(text):
     return [int(text[i:i + 2], 16) for i in (1, 3, 5)]
 
 
-def check_contrast(browser):
-    """Every text on its ground, and every curve, mark and body on its own."""
+def text_contrasts(browser):
+    """Name and contrast of every text that is shown, on its ground."""
     texts = browser.execute_script("""
         const numbers = (text) => text.match(/[\\d.]+/g).map(Number);
         const ground = (e) => {  // what is behind, layers that let some of it through included
@@ -264,9 +264,14 @@ def check_contrast(browser):
           .filter((e) => hasText(e) && e.offsetParent !== null && !e.disabled)
           .map((e) => [e.id || e.className || e.tagName, numbers(getComputedStyle(e).color),
                        ground(e)]);""")
+    return [(name, contrast(colour[:3], behind)) for name, colour, behind in texts]
+
+
+def check_contrast(browser):
+    """Every text on its ground, and every curve, mark and body on its own."""
+    texts = text_contrasts(browser)
     check(len(texts) > 40, f"only {len(texts)} texts to look at")
-    for name, colour, behind in texts:
-        ratio = contrast(colour[:3], behind)
+    for name, ratio in texts:
         check(ratio >= TEXT_CONTRAST, f"text of {name}: contrast {ratio:.2f}")
     lines, bodies = browser.execute_script(
         "return [LINE_COLOURS, BODY_COLOURS.map((c) => '#' + c.toString(16).padStart(6, '0'))]")
