@@ -9,6 +9,7 @@
 #include "config/machine/effective_text.hpp"
 #include "core/base/sincos.hpp"
 #include "tests/support/machine_text.hpp"
+#include "tests/support/replay_fixture.hpp"
 
 namespace axg::test {
 namespace {
@@ -367,18 +368,18 @@ TEST(MachineGuard, ACapIsRefusedWhereNothingWouldKeepIt) {
         with(kSmallMachine, "speed_cap: false", "speed_cap: false, cap: all_axes");
     EXPECT_EQ(
         faults_of(with(capped, "cap: all_axes", "cap: per_axis")),
-        "m:36: guard.cap: invalid value (found per_axis, expected none or all_axes; the guard "
-        "does not choose single axes yet).\n");
+        "m:36: guard.cap: invalid value (found per_axis, expected none or all_axes). The guard "
+        "does not choose single axes yet.\n");
     EXPECT_EQ(
         faults_of(
             with(capped, "  stale_after_us: 3000\n", "  stale_after_us: 3000\n  permit: 1\n")),
         "m:37: guard.cap: invalid value (found all_axes with can.permit: 1, expected none, or "
-        "permit: 2; no proof may use the cap of a permit of version 1).\n");
+        "permit: 2). No proof may use the cap of a permit of version 1.\n");
     EXPECT_EQ(faults_of(with(capped, "  stale_after_us: 3000\n",
                              "  stale_after_us: 12000\n  permit_samples: 10\n")),
               "m:37: guard.cap: invalid value (found all_axes with one number as "
-              "can.permit_samples, expected none, or two numbers, such as [3, 12]; the cap falls "
-              "where the longer permit is not proven).\n");
+              "can.permit_samples, expected none, or two numbers, such as [3, 12]). The cap falls "
+              "where the longer permit is not proven.\n");
     const std::string ahead = test::with_can(
         with(test::content_of(test::kPaperMachine), "\nguard:\n", "\nguard:\n  cap: all_axes\n"),
         "  format: fd\n  ahead: {samples: 300}\n");
