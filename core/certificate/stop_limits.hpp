@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a machine file promises of the motion of its axes, as the certificate uses it: limits, errors
-// of the samples, and the time until braking. Pure. Source: docs/theory/certificate.md, "How far an
-// axis can go".
+// What a machine file promises of the motion of its axes, as the certificate uses it: limits,
+// errors of the samples, and the time until braking. Pure. Source: docs/theory/certificate.md,
+// "How far an axis can go".
 #pragma once
 
 #include <cstdint>
