@@ -206,6 +206,9 @@ MHD_Result HttpServer::Impl::on_request(void* self, MHD_Connection* connection, 
             const std::lock_guard lock(server.mutex);
             text = server.event;
         }
+        if (text.empty()) {
+            return refuse(connection, MHD_HTTP_SERVICE_UNAVAILABLE, "no event yet\n");
+        }
         return answer(connection, MHD_HTTP_OK, make_response(text, "application/json", false));
     }
     const auto part = server.parts.find(name);

@@ -40,6 +40,7 @@ class HttpServer {
   public:
     /// Listens, and serves from now on. Null: `fault` has the failure and the next step.
     /// @param parts  in addition to /events, the stream, and /state, its newest event alone
+    /// (503 before the first)
     [[nodiscard]] static std::unique_ptr<HttpServer> start(const ListenAddress& address,
                                                            HttpParts parts, std::string& fault);
     /// False: built without libmicrohttpd.

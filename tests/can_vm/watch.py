@@ -33,8 +33,14 @@ class Watch:
         threading.Thread(target=self.process.stderr.read, daemon=True).start()
 
     def state(self):
-        with urllib.request.urlopen(self.url + "state", timeout=10) as reply:
-            return json.load(reply)
+        end = time.monotonic() + 10
+        while True:
+            try:
+                with urllib.request.urlopen(self.url + "state", timeout=10) as reply:
+                    return json.load(reply)
+            except urllib.error.HTTPError as error:  # before the first event
+                expect(error.code == 503 and time.monotonic() < end, error.code)
+                time.sleep(0.05)
 
     def wait_for(self, is_so, guard=None, timeout_s=20):
         end = time.monotonic() + timeout_s

@@ -52,6 +52,7 @@ TEST_F(HttpServerTest, GivesItsPartsAndTheNewestState) {
     }
     EXPECT_EQ(page.find("Access-Control-Allow"), std::string::npos);
     EXPECT_GT(get(port, "/live.js").size(), 300'000U);
+    EXPECT_EQ(status_of(get(port, "/state")), 503) << "there is none yet";
     server->publish("{\"n\":1}");
     server->publish("{\"n\":2}");
     EXPECT_NE(get(port, "/state").find("{\"n\":2}"), std::string::npos);
