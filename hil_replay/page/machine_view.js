@@ -190,8 +190,11 @@ class MachineView {
     this.marked.add(points);
   }
 
-  /** Boxes that bodies do not leave: [{low_mm, high_mm, placed}], each in its body's mesh frame. */
-  showReach(boxes) {
+  /**
+   * Boxes that bodies do not leave, drawn by the next `show`: [{low_mm, high_mm, placed}], each in
+   * its body's mesh frame.
+   */
+  setReach(boxes) {
     for (const old of this.reach.children) old.geometry.dispose();
     this.reach.remove(...this.reach.children);
     for (const {low_mm, high_mm, placed} of boxes) {
@@ -210,7 +213,6 @@ class MachineView {
         this.reach.add(part);
       }
     }
-    this.draw();
   }
 
   markTriangle(corners, colour) {

@@ -213,9 +213,9 @@ class RunPage {
     const nearest = stop && stop.nearest ? stop.nearest : ofRow;
     this.positions = positions;
     if (this.view) {
-      this.view.show(positions, samples.tool[this.row], nearest, stop ? stop.touching : []);
-      this.view.showReach(stop && stop.why && this.byId("reach").checked
+      this.view.setReach(stop && stop.why && this.byId("reach").checked
         ? stop.why.reach_bodies || [] : []);
+      this.view.show(positions, samples.tool[this.row], nearest, stop ? stop.touching : []);
     }
     writeWhy(stop && stop.why);
     this.byId("slider").value = this.row;

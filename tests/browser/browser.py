@@ -4,6 +4,7 @@ import os
 import sys
 
 SKIPPED = 77
+SCRIPT_SECONDS = 120  # a picture is drawn by the processor: minutes while others compile
 CHROMIUM, DRIVER = "/usr/bin/chromium", "/usr/bin/chromedriver"
 FLAGS = ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--use-angle=swiftshader",
          "--enable-unsafe-swiftshader")
@@ -32,7 +33,9 @@ def browser_or_exit(width=1400, height=900):
     for flag in (*FLAGS, f"--window-size={width},{height}"):
         options.add_argument(flag)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    return webdriver.Chrome(service=Service(DRIVER), options=options)
+    browser = webdriver.Chrome(service=Service(DRIVER), options=options)
+    browser.set_script_timeout(SCRIPT_SECONDS)
+    return browser
 
 
 def resize(browser, width=None, height=None):
