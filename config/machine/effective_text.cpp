@@ -120,14 +120,7 @@ void add_pairs(Lines& lines, const Machine& machine) {
     }
 }
 
-void add_can(Lines& lines, const CanLayout& can) {
-    lines.add("can.format", static_cast<std::uint32_t>(can.format));
-    lines.add("can.sample_us", can.sample_us);
-    lines.add("can.sync", can.sync_id);
-    for (std::size_t i = 0; i < can.axis_ids.size(); ++i) {
-        lines.add("can.axes." + std::to_string(i), can.axis_ids[i]);
-        lines.add("can.data_ids." + std::to_string(i), can.data_ids[i]);
-    }
+void add_signals(Lines& lines, const CanLayout& can) {
     for (const CanSignal& signal : can.signals) {
         const std::string key = "can.signals." + std::to_string(signal.axis) + '.' +
                                 std::to_string(static_cast<unsigned>(signal.role));
@@ -147,6 +140,17 @@ void add_can(Lines& lines, const CanLayout& can) {
         lines.add(key + ".selector.order", static_cast<std::uint32_t>(selector.order));
         lines.add(key + ".selector.value", selector.value);
     }
+}
+
+void add_can(Lines& lines, const CanLayout& can) {
+    lines.add("can.format", static_cast<std::uint32_t>(can.format));
+    lines.add("can.sample_us", can.sample_us);
+    lines.add("can.sync", can.sync_id);
+    for (std::size_t i = 0; i < can.axis_ids.size(); ++i) {
+        lines.add("can.axes." + std::to_string(i), can.axis_ids[i]);
+        lines.add("can.data_ids." + std::to_string(i), can.data_ids[i]);
+    }
+    add_signals(lines, can);
     lines.add("can.signal_frame_bytes", can.signal_frame_bytes);
     if (can.arrival_jitter_us != 0) {
         lines.add("can.arrival_jitter_us", can.arrival_jitter_us);

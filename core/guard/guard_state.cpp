@@ -139,8 +139,6 @@ void act(Guard& guard, GuardAction action, const GuardLimits& limits,
             guard.bad -= std::min(guard.bad, 1U);
             break;
         case GuardAction::disturbed:
-            guard.bad += limits.bad_weight;
-            break;
         case GuardAction::missed:
             guard.bad += limits.bad_weight;
             break;
