@@ -6,7 +6,12 @@
 // axis data of a triangle come from, and whether axis loops are written out, changes no bit.
 #pragma once
 
+#if __has_include(<nv/target>)
 #include <cuda_pipeline.h>
+#define AXG_ASYNC_COPY 1
+#else  // a toolkit without CCCL's headers, as PyPI's: lines are copied through registers
+#define AXG_ASYNC_COPY 0
+#endif
 
 #include <type_traits>
 
@@ -181,8 +186,13 @@ __device__ __forceinline__ sat::TriangleAxes<float> load_axes(
 /// Starts to copy whole lines of 16 bytes, all lanes together.
 __device__ __forceinline__ void start_copy(void* to, const void* from, unsigned bytes) {
     for (unsigned at = lane_of_thread() * 16; at < bytes; at += kWarp * 16) {
-        __pipeline_memcpy_async(static_cast<char*>(to) + at, static_cast<const char*>(from) + at,
-                                16);
+        char* const line = static_cast<char*>(to) + at;
+        const char* const source = static_cast<const char*>(from) + at;
+#if AXG_ASYNC_COPY
+        __pipeline_memcpy_async(line, source, 16);
+#else
+        *reinterpret_cast<uint4*>(line) = *reinterpret_cast<const uint4*>(source);
+#endif
     }
 }
 
@@ -199,7 +209,9 @@ __device__ void prefetch(const DeviceBuffers& b, std::uint32_t i, std::uint32_t 
         start_copy(next.leaf_a.v, q.a.leaves[node_a.leaf].v, sizeof next.leaf_a.v);
         start_copy(next.leaf_b.v, q.b.leaves[node_b.leaf].v, sizeof next.leaf_b.v);
     }
+#if AXG_ASYNC_COPY
     __pipeline_commit();
+#endif
 }
 
 /// One pair of leaves, up to the pairs of triangles that are left of it. Called by whole warps;
@@ -410,7 +422,9 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
         const bool is_lost = shared.is_lost;
         const std::uint32_t i = base + warp * gridDim.x;
         if constexpr (Shared<kData>::kPrefetched) {
+#if AXG_ASYNC_COPY
             __pipeline_wait_prior(0);
+#endif
             __syncwarp();
         }
         if (take(b, i, shared.count, tile) && !is_lost) {

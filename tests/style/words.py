@@ -14,12 +14,12 @@ import sys
 
 from sources import finish, read_text, tracked_files
 
-# Pages, most words of all of them: a limit against growth. The first four sum to 48,300.
+# Pages, most words of all of them: a limit against growth. The first four sum to 48,900.
 SHELVES = {
     "guide": (["README.md", "docs/guide/*"], 8_900),
     "theory": (["docs/theory/*"], 12_900),
-    "reference": (["docs/reference/*"], 18_400),
-    "measurements and decisions": (["docs/measurements/*", "docs/decisions/*"], 8_400),
+    "reference": (["docs/reference/*"], 18_500),
+    "measurements and decisions": (["docs/measurements/*", "docs/decisions/*"], 8_500),
     "rules": (["CONTRIBUTING.md", "docs/glossary.md", "docs/style.md"], 3_760),
 }
 PARAGRAPH_WORDS_MAX = 120
