@@ -224,6 +224,20 @@ std::string csv_axes(const Machine& machine, std::span<const double> positions) 
 
 namespace {
 
+/// Text, CSV, page and JSON. Returns the exit code: `exit_code` where all were written.
+int write_results(const DriveArguments& arguments, const LoadedMachine& loaded,
+                  const DriveReport& report, const DriveCsv& csv, PageRecorder* page,
+                  int exit_code) {
+    if (report.result.encoded.status == EncodeStatus::ok) {
+        print_drive(report, arguments.json.words());
+    }
+    bool is_written = arguments.csv.empty() || write_whole_file(arguments.csv, csv.text(), stderr);
+    is_written =
+        (page == nullptr || write_page(arguments, loaded, report, page->finish())) && is_written;
+    return write_json(arguments.json, describe_drive(report)) && is_written ? exit_code
+                                                                            : kExitInternal;
+}
+
 int run_drive(const DriveArguments& arguments) {
     LoadedMachine loaded;
     DriveOptions options;
@@ -289,13 +303,7 @@ int run_drive(const DriveArguments& arguments) {
     const int exit_code = report_if_gave_up(chosen) ? kExitGpu
                                                     : exit_code_of(arguments, machine, result,
                                                                    report.contact.has_value());
-    if (result.encoded.status == EncodeStatus::ok) {
-        print_drive(report, arguments.json.words());
-    }
-    bool is_written = arguments.csv.empty() || write_whole_file(arguments.csv, csv.text(), stderr);
-    is_written = (!page || write_page(arguments, loaded, report, page->finish())) && is_written;
-    return write_json(arguments.json, describe_drive(report)) && is_written ? exit_code
-                                                                            : kExitInternal;
+    return write_results(arguments, loaded, report, csv, page.get(), exit_code);
 }
 
 /// An option of the guard in this process, and what to do instead where there is none.
