@@ -72,6 +72,16 @@ nlohmann::ordered_json guard_stop_json(const DriveReport& report) {
     return out;
 }
 
+nlohmann::ordered_json rest_json(const Machine& machine, const DriveResult& result) {
+    auto out = nlohmann::ordered_json::object();
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+        const Axis& axis = machine.axes[i];
+        out[axis.name + (axis.kind == AxisKind::rotary ? "_deg" : "_mm")] =
+            in_file_units(axis, result.rest[i].position);
+    }
+    return out;
+}
+
 }  // namespace
 
 std::string describe_drive(const DriveReport& report) {
@@ -126,12 +136,7 @@ std::string describe_drive(const DriveReport& report) {
         out["contact"] = {{"after_s", seconds_after_start(*report.contact)},
                           {"pair", pair_name(machine, report.contact->pair)}};
     }
-    auto& rest = out["rest"] = nlohmann::ordered_json::object();
-    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-        const Axis& axis = machine.axes[i];
-        rest[axis.name + (axis.kind == AxisKind::rotary ? "_deg" : "_mm")] =
-            in_file_units(axis, result.rest[i].position);
-    }
+    out["rest"] = rest_json(machine, result);
     auto& pairs = out["pairs"] = nlohmann::ordered_json::array();
     for (const PairAtRest& pair : pairs_at_rest(report)) {
         pairs.push_back({{"pair", pair_name(machine, pair.pair)},
