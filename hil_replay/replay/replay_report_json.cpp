@@ -141,6 +141,7 @@ std::string describe_unread(const std::string& trace, const std::string& fault) 
     return text_of(out);
 }
 
+// NOLINTNEXTLINE(readability-function-size): one list of keys
 ReplayDocument describe_replay(const ReplayReport& report) {
     const ReplayRun& run = report.run;
     const Machine& machine = report.loaded.machine;

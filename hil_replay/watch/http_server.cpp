@@ -164,8 +164,8 @@ struct HttpServer::Impl {
     static MHD_Result on_request(void* self, MHD_Connection* connection, const char* path,
                                  const char* method, const char* version, const char* upload,
                                  std::size_t* upload_bytes, void** request);
-    static ssize_t on_read(void* stream, std::uint64_t position, char* to, std::size_t size);
-    static void on_closed(void* stream);
+    static ssize_t on_read(void* from, std::uint64_t position, char* to, std::size_t size);
+    static void on_closed(void* from);
     MHD_Result open_stream(MHD_Connection* connection);
     void wake_all();
 
@@ -262,7 +262,7 @@ ssize_t HttpServer::Impl::on_read(void* from, std::uint64_t /*position*/, char* 
         stream.sent = 0;
     }
     const std::size_t count = std::min(size, stream.text.size() - stream.sent);
-    std::memcpy(to, stream.text.data() + stream.sent, count);
+    std::copy_n(stream.text.data() + stream.sent, count, to);
     stream.sent += count;
     return static_cast<ssize_t>(count);
 }

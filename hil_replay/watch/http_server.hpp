@@ -34,7 +34,7 @@ struct ListenAddress {
 /// Whether a request that names this host was meant for this server: localhost or a numeric
 /// address, with any port. Any other name may be an attacker's that resolves to this computer (DNS
 /// rebinding).
-[[nodiscard]] bool is_host_allowed(std::string_view host);
+[[nodiscard]] bool is_host_allowed(std::string_view text);
 
 class HttpServer {
   public:
