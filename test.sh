@@ -7,12 +7,12 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 usage() {
     cat <<'END'
 Example: ./test.sh          the release build and its tests, some minutes on two cores
-         ./test.sh --all    all that CI runs: also sanitizers, clang, a Jetson's build under an
+         ./test.sh --all    all that CI runs: also sanitizers, a Jetson's build under an
                             emulator, equal verdicts of all builds, exact oracle, model
                             check, fuzzing, static checks; 30 to 60 minutes
-         ./test.sh --night  --all, and what takes longest: tests labelled long with sanitizers
-                            too, those labelled night, all of the clang build, ten minutes of
-                            each fuzz target; about four hours
+         ./test.sh --night  --all, and what takes longest: all tests with sanitizers, those
+                            labelled night, the clang build, ten minutes of each fuzz target;
+                            about four hours
 Environment: AXG_SHARED_DATA   folder of real machines and logs for the tests labelled data
              AXG_REQUIRE_DATA  1 (or CI=true): a skipped data (--all: or oracle, vm,
                               model, browser, emulated or machine) test is a failure
@@ -76,14 +76,14 @@ check_preset() { # PRESET LABELS_LEFT_OUT [CMAKE OPTION...]
     check_tests "$preset" -LE "^($without)$"
 }
 
-check_labels() { # PRESET LABEL...: the programs, and of the tests these alone
-    local preset=$1 labels
-    shift
+check_labels() { # PRESET "TARGET..." LABEL...: these, the programs, and of the tests these alone
+    local preset=$1 targets labels
+    read -ra targets <<<"axguard axguard-lab axguardd $2"
+    shift 2
     step "$preset configure" configure_preset "$preset" -DAXG_WERROR=ON || return 0
-    step "$preset build" build_preset "$preset" axguard axguard-lab axguardd "${@/%/_tests}" ||
-        return 0
+    step "$preset build" build_preset "$preset" "${targets[@]}" "${@/%/_tests}" || return 0
     labels=$(IFS='|' && echo "$*")
-    check_tests "$preset" -L "^($labels)$" -LE "^(timing|slow|night)$"
+    check_tests "$preset" -L "^($labels)$" -LE "^(timing|slow|long|night)$"
 }
 
 check_tests() { # PRESET CTEST_OPTION...
@@ -116,23 +116,24 @@ step "cantools from PyPI" python3 -m pip install -q --disable-pip-version-check 
 # compiles them, and jetson-thor runs its packages through all checks.
 check_preset host-release "timing$day" -DAXG_WERROR=ON -DAXG_BENCHMARKS=ON -DAXG_CUDA=ON \
     -DAXG_CUDA_ARCHITECTURES=90-real
-# Other machine code of the same arithmetic. What clang warns of, and all other tests, has the
-# sanitizers' build, which is clang's too.
+# clang's code: by day the sanitizers' build, of libraries, programs, fuzz targets, unit and
+# property tests. A command that runs a whole program takes minutes there.
+builds=(host-release host-asan)
 if [[ $night == yes ]]; then
     check_preset host-clang 'timing|oracle|peer|style|browser|model' -DAXG_WERROR=ON
+    builds+=(host-clang)
+    # It has the assertions of host-debug too.
+    check_preset host-asan "timing|slow|oracle|peer|style|model|noalloc|browser" -DAXG_WERROR=ON
 else
-    check_labels host-clang noalloc parity
+    step "host-clang configure" configure_preset host-clang -DAXG_WERROR=ON # what clang-tidy reads
+    check_labels host-asan "fuzz_targets axg_lane_hash" unit property parity
 fi
-# The sanitizers' build has the assertions of host-debug too.
-check_preset host-asan "timing|slow|oracle|peer|style|model|noalloc|browser${day:+|night|long}" \
-    -DAXG_WERROR=ON
-builds=(host-release host-clang host-asan)
 # A Jetson's build, packed, and run under emulators. Its libraries come from Debian and PyPI: where
 # there is no network, there is no such build.
 if step "sysroot" "$root/toolchains/sysroot.sh" &&
     step "guest" "$root/toolchains/sysroot.sh" --guest &&
     step "CUDA for aarch64" "$root/toolchains/cuda_toolkit.sh" aarch64; then
-    check_labels jetson-thor emulated machine
+    check_labels jetson-thor "" emulated machine
     step "jetson-thor packages" "$root/toolchains/build_packages.sh" jetson-thor || true
     builds+=(jetson-thor)
 elif [[ ${#require[@]} -eq 0 ]]; then

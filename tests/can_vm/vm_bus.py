@@ -165,7 +165,8 @@ class Guard:
              *options],
             stderr=subprocess.PIPE, text=True)
         RUNNING.append(self.process)
-        threading.Thread(target=self._read, daemon=True).start()
+        self.reader = threading.Thread(target=self._read, daemon=True)
+        self.reader.start()
 
     def _read(self):
         for line in self.process.stderr:
@@ -221,11 +222,17 @@ class Guard:
         self.process.kill()
         self.process.wait()
 
+    def ended(self, timeout_s=20):
+        """Its exit code, when all that it said has been read."""
+        code = self.process.wait(timeout_s)
+        self.reader.join(timeout_s)
+        return code
+
     def end(self):
         """The exit code, and the document."""
         if self.process.poll() is None:
             self.process.send_signal(signal.SIGTERM)
-        code = self.process.wait(20)
+        code = self.ended()
         with open("/run/guard.json") as file:
             return code, json.load(file)
 
