@@ -241,6 +241,7 @@ class Reader {
         IniAxis& axis = out_.axes.emplace_back();
         axis.letter = letter;
         axis.is_rotary = letter >= 'A' && letter <= 'C';
+        axis.follows_tip = !is_trivial_;
         scale_ = axis.is_rotary ? angular_ : linear_;
         if (is_trivial_) {
             take(std::string("AXIS_") + letter, axis);

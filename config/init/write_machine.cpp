@@ -104,12 +104,23 @@ const char* errors_text(bool is_rotary) noexcept {
                      : "position_error_mm: 0.001, following_error_mm: 0";
 }
 
-/// Travel, speed and acceleration as the control's INI file has them. It knows no stop but the one
-/// at full acceleration; without MAX_JERK, LinuxCNC limits no jerk.
+// LinuxCNC exceeds its own limits: where moves blend it adds two accelerations, and kinematics for
+// the tip limit no joint (docs/measurements/linuxcnc.md).
+constexpr double kOverIni = 2;
+constexpr const char* kOverIniHead =
+    R"(# LinuxCNC exceeds the limits of its INI file where moves blend, so acceleration_... is twice
+# MAX_ACCELERATION; with kinematics for the tip, speed_... is also twice MAX_VELOCITY. If a drive
+# cannot do that, halve the values of the INI file instead.
+)";
+
+/// Travel, speed and acceleration from the control's INI file. It knows no stop but the one at full
+/// acceleration; without MAX_JERK, LinuxCNC limits no jerk.
 std::string known_axis_text(const IniAxis& axis) {
     const char* const unit = axis.is_rotary ? "deg" : "mm";
-    const double acceleration = axis.acceleration.value_or(axis.is_rotary ? 500 : 1000);
-    const double speed = axis.speed.value_or(axis.is_rotary ? 90 : 10000.0 / 60);
+    const double full = axis.acceleration.value_or(axis.is_rotary ? 500 : 1000);
+    const double acceleration = full * (axis.acceleration ? kOverIni : 1);
+    const double speed = axis.speed.value_or(axis.is_rotary ? 90 : 10000.0 / 60) *
+                         (axis.speed && axis.follows_tip ? kOverIni : 1);
     std::string guesses = "stopping, position_error, following_error";
     std::string travel = "unlimited";
     if (!axis.is_unlimited) {
@@ -127,7 +138,7 @@ std::string known_axis_text(const IniAxis& axis) {
         "jerk_{}_s3: {}, stopping_{}_s2: {:.9g}, {}}}  {}: {}\n",
         axis.letter, axis.is_rotary ? "rotary" : "linear", unit, travel,
         axis.is_rotary ? "deg_s" : "mm_min", speed * (axis.is_rotary ? 1 : 60), unit, acceleration,
-        unit, jerk, unit, 0.8 * acceleration, errors_text(axis.is_rotary), kGuessMark, guesses);
+        unit, jerk, unit, 0.8 * full, errors_text(axis.is_rotary), kGuessMark, guesses);
 }
 
 /// An axis of the file, with its place on the bus.
@@ -137,6 +148,7 @@ std::string with_slot(std::string axis_text, int slot) {
 
 std::string axes_text(const std::vector<RoleGuess>& roles, const std::vector<IniAxis>& known) {
     std::string text = kAxesHead;
+    text.insert(text.rfind("axes:"), known.empty() ? "" : kOverIniHead);
     int slot = 0;
     for (const char axis : kAxisOrder) {
         const bool used = std::any_of(roles.begin(), roles.end(),

@@ -107,14 +107,16 @@ TEST(LinuxcncIni, TheKinematicsSayWhichJointIsWhichAxis) {
 // With a tilted table the tool's place and the slide's are two things: [AXIS_Z] limits the first.
 TEST(LinuxcncIni, OnlyTrivialKinematicsTakeTheLimitsOfTheTip) {
     const std::string limits = "[AXIS_Z]\nMAX_LIMIT=5\n[JOINT_2]\nMAX_LIMIT=7\n";
-    const auto limit_of_z = [&limits](const std::string& kinematics) {
+    const auto axis_z = [&limits](const std::string& kinematics) {
         return read_ini(kHead + ("[KINS]\nKINEMATICS=" + kinematics + "\n") + limits, "t.ini")
-            .axes.at(1)
-            .max;
+            .axes.at(1);
     };
-    EXPECT_EQ(limit_of_z("trivkins"), 5.0);
-    EXPECT_EQ(limit_of_z("xyzac-trt-kins"), 7.0);
-    EXPECT_EQ(limit_of_z("xyzbc-trt-kins"), 7.0);
+    EXPECT_EQ(axis_z("trivkins").max, 5.0);
+    EXPECT_FALSE(axis_z("trivkins").follows_tip);
+    for (const char* const kinematics : {"xyzac-trt-kins", "xyzbc-trt-kins"}) {
+        EXPECT_EQ(axis_z(kinematics).max, 7.0);
+        EXPECT_TRUE(axis_z(kinematics).follows_tip);
+    }
 }
 
 TEST(LinuxcncIni, JointsThatAreNoSlidesAreRefused) {
