@@ -39,20 +39,9 @@ class LivePage {
       this.byId("canvas_box").hidden = this.byId("controls").hidden = true;
       return;
     }
-    this.data.machine.bodies.forEach((body, i) => {
-      if (this.data.body_meshes[i].corners.length === 0 && !body.is_tool) return;
-      const label = document.createElement("label"), box = document.createElement("input");
-      const colour = document.createElement("i");
-      box.type = "checkbox";
-      box.checked = true;
-      colour.style.background = `#${this.view.colourOf(i).toString(16).padStart(6, "0")}`;
-      box.addEventListener("change", () => {
-        this.view.setBodyVisible(i, box.checked);
-        this.placed = null;
-        this.place(this.pair);
-      });
-      label.append(box, colour, body.name);
-      this.byId("bodies").append(label);
+    this.view.addBodyBoxes(this.byId("bodies"), () => {
+      this.placed = null;
+      this.place(this.pair);
     });
     this.positions = this.data.machine.axes.map(() => 0);
     this.tool = 0;

@@ -106,6 +106,24 @@ class MachineView {
     this.draw();
   }
 
+  /** A check box for each body that has a surface, in `box`; `changed()` follows a click. */
+  addBodyBoxes(box, changed) {
+    this.data.machine.bodies.forEach((body, i) => {
+      if (this.data.body_meshes[i].corners.length === 0 && !body.is_tool) return;
+      const label = document.createElement("label"), input = document.createElement("input");
+      const colour = document.createElement("i");
+      input.type = "checkbox";
+      input.checked = true;
+      colour.style.background = `#${this.colourOf(i).toString(16).padStart(6, "0")}`;
+      input.addEventListener("change", () => {
+        this.setBodyVisible(i, input.checked);
+        changed();
+      });
+      label.append(input, colour, body.name);
+      box.append(label);
+    });
+  }
+
   /** The slot of a tool number; 0: what is in the spindle when nothing says otherwise. */
   toolSlot(number) {
     const wanted = number === 0 ? this.data.machine.first_tool : number;

@@ -75,20 +75,7 @@ class RunPage {
       this.view = null;
       return;
     }
-    this.data.machine.bodies.forEach((body, i) => {
-      if (this.data.body_meshes[i].corners.length === 0 && !body.is_tool) return;
-      const label = document.createElement("label"), box = document.createElement("input");
-      const colour = document.createElement("i");
-      box.type = "checkbox";
-      box.checked = true;
-      colour.style.background = `#${this.view.colourOf(i).toString(16).padStart(6, "0")}`;
-      box.addEventListener("change", () => {
-        this.view.setBodyVisible(i, box.checked);
-        this.goTo(this.time);
-      });
-      label.append(box, colour, body.name);
-      this.byId("bodies").append(label);
-    });
+    this.view.addBodyBoxes(this.byId("bodies"), () => this.goTo(this.time));
     window.addEventListener("resize", () => this.view.draw());
   }
 
