@@ -121,6 +121,12 @@ void GuardChain::update_advisories() noexcept {
     }
 }
 
+UnprovenPair GuardChain::unproven(std::uint32_t pair) const noexcept {
+    return stop_certificate_ != nullptr && pair != kNoIndex
+               ? unproven_pair(machine_, *stop_certificate_, pair)
+               : UnprovenPair{};
+}
+
 std::span<const QueryResult> GuardChain::results() const noexcept {
     return {results_.data(), is_queried() ? pair_queries_.count + 2 : 0};
 }

@@ -12,6 +12,7 @@
 #include "core/collision/containment.hpp"
 #include "core/collision/engine.hpp"
 #include "core/guard/cap_guard.hpp"
+#include "core/guard/distance_need.hpp"
 #include "core/guard/margin_advisory.hpp"
 #include "core/guard/monitor.hpp"
 #include "core/guard/speed_advisory.hpp"
@@ -71,6 +72,8 @@ class GuardChain {
     [[nodiscard]] const StopCertificate* stop_certificate() const noexcept {
         return stop_certificate_;
     }
+    /// unproven_pair of the last decision; not known in contact mode and without a pair.
+    [[nodiscard]] UnprovenPair unproven(std::uint32_t pair) const noexcept;
     [[nodiscard]] const MarginAdvisory* margin_advisory() const noexcept {
         return margin_advisory_;
     }

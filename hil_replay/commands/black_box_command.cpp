@@ -22,6 +22,7 @@
 #include "hil_replay/replay/black_box_file.hpp"
 #include "hil_replay/replay/black_box_replay.hpp"
 #include "hil_replay/replay/replay_csv.hpp"
+#include "hil_replay/replay/why_stop.hpp"
 #include "hil_replay/trace/candump_log.hpp"
 
 namespace axg {
@@ -139,6 +140,25 @@ void print_stop(const ReplayedBlackBox& result, const Machine& machine, std::FIL
     }
 }
 
+std::optional<StopWhy> why_of_refused(const ReplayedBlackBox& result, const WhySources& sources) {
+    if (!result.refused) {
+        return std::nullopt;
+    }
+    const RefusedCycle& refused = *result.refused;
+    return why_of(sources, {refused.reason, refused.pair, refused.snapshot, refused.unproven});
+}
+
+void print_why(const ReplayedBlackBox& result, const std::optional<StopWhy>& why,
+               const Machine& machine, std::FILE* words) {
+    if (!result.recorded && result.refused) {
+        fmt::print(words, "permit withheld to the end: {}\n",
+                   reason_text(result.refused->reason, result.refused->pair, machine, ", "));
+    }
+    if (why) {
+        fmt::print(words, "{}", format_why(machine, *why));
+    }
+}
+
 /// From the last frame of a sample until its answer was on the bus.
 void print_times(const ReplayedBlackBox& result, std::FILE* words) {
     const TimeHistogram& times = result.permit_time;
@@ -213,12 +233,14 @@ int judge(const BlackBoxArguments& arguments, BlackBoxFile& black_box, const Loa
     print_comparison("verdicts", result.verdicts, words);
     print_sent(result, words);
     print_stop(result, machine, words);
+    const std::optional<StopWhy> why = why_of_refused(result, {loaded, chain.engine()});
+    print_why(result, why, machine, words);
     print_times(result, words);
     if (!black_box.error().empty()) {
         fmt::print(stderr, "{}\n", black_box.error());
     }
-    bool is_written = write_json(arguments.json,
-                                 describe_black_box({arguments.file, machine, black_box, result}));
+    bool is_written = write_json(
+        arguments.json, describe_black_box({arguments.file, machine, black_box, result, why}));
     if (frames && !frames->finish()) {
         fmt::print(stderr, "{}\n", frames->error());
         is_written = false;

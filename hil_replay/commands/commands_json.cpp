@@ -12,6 +12,7 @@
 #include "hil_replay/replay/limits_json.hpp"
 #include "hil_replay/replay/plan_json.hpp"
 #include "hil_replay/replay/replay_csv.hpp"
+#include "hil_replay/replay/stop_cause_json.hpp"
 #include "hil_replay/simulate/trace_simulation.hpp"
 #include "hil_replay/trace/trace_reader.hpp"
 
@@ -218,6 +219,7 @@ std::string describe_black_box(const BlackBoxReport& report) {
                       ? Json{{"same", result.sent->same}, {"different", result.sent->different}}
                       : Json(nullptr);
     out["is_reproduced"] = can_be_reproduced(result) ? Json(is_reproduced(result)) : Json(nullptr);
+    out["why"] = report.why ? why_json(machine, *report.why) : Json(nullptr);
     out["damage"] = report.black_box.error();
     return text_of(out);
 }

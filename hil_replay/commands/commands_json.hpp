@@ -4,6 +4,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 
 #include "hil_replay/trace/trace_survey.hpp"
@@ -15,6 +16,7 @@ class TraceReader;
 struct GcodeResult;
 struct ReplayedBlackBox;
 struct SimulationSummary;
+struct StopWhy;
 
 struct CompileReport {
     const std::string &file, &source, &name;
@@ -48,6 +50,7 @@ struct BlackBoxReport {
     const Machine& machine;
     const BlackBoxFile& black_box;
     const ReplayedBlackBox& result;
+    const std::optional<StopWhy>& why;  // of result.refused
 };
 [[nodiscard]] std::string describe_black_box(const BlackBoxReport& report);
 

@@ -7,8 +7,7 @@ namespace axg {
 
 DriveGuard::DriveGuard(const Machine& machine, GuardChain& chain, const ConfigurationHashes& hashes,
                        std::int64_t response_us, std::int64_t now_us, std::int64_t killed_us)
-    : machine_(machine),
-      chain_(chain),
+    : chain_(chain),
       sends_sync_(machine.can.guard_sends_sync),
       killed_us_(killed_us),
       sent_(&first_),
@@ -74,13 +73,7 @@ void DriveGuard::note_stop() {
              .limit = result_.limit,
              .cap = result_.cap_fact,
              .snapshot = chain_.snapshot(),
-             .unproven = unproven(live.pair())};
-}
-
-UnprovenPair DriveGuard::unproven(std::uint32_t pair) const noexcept {
-    const StopCertificate* const certificate = chain_.stop_certificate();
-    return certificate != nullptr && pair != kNoIndex ? unproven_pair(machine_, *certificate, pair)
-                                                      : UnprovenPair{};
+             .unproven = chain_.unproven(live.pair())};
 }
 
 }  // namespace axg

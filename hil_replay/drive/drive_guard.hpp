@@ -51,7 +51,7 @@ class DriveGuard {
                 .pair = result_.pair,
                 .limit = result_.limit,
                 .snapshot = chain_.snapshot(),
-                .unproven = unproven(result_.pair)};
+                .unproven = chain_.unproven(result_.pair)};
     }
     [[nodiscard]] const CycleResult& result() const noexcept { return result_; }
     /// Of the newest result: a permit was sent.
@@ -59,11 +59,9 @@ class DriveGuard {
 
   private:
     void note_stop();
-    [[nodiscard]] UnprovenPair unproven(std::uint32_t pair) const noexcept;
 
     void take_wire(std::vector<CanFrame>& sent);
 
-    const Machine& machine_;
     GuardChain& chain_;
     bool sends_sync_;
     std::int64_t killed_us_;

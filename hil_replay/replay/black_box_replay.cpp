@@ -66,9 +66,19 @@ ReplayedBlackBox BlackBoxReplay::result() {
     ReplayedBlackBox out = result_;
     const bool is_input = out.recorded && out.recorded->cause == GuardFault::input;
     out.replayed = is_input ? input_ : verdict_;
-    if (!guard_) {
-        return out;
+    if (guard_) {
+        compare_sent(out);
     }
+    if (!out.recorded) {
+        out.refused = withheld_;
+    } else if (out.replayed && out.replayed->cause == GuardFault::verdict) {
+        out.refused = stopped_;
+    }
+    return out;
+}
+
+/// With the guard that ran once more.
+void BlackBoxReplay::compare_sent(ReplayedBlackBox& out) {
     guard_->end();
     out.sent = guard_->comparison();
     out.replayed.reset();
@@ -82,7 +92,6 @@ ReplayedBlackBox BlackBoxReplay::result() {
                                                       ? verdict_->latched_us
                                                       : 0};
     }
-    return out;
 }
 
 void BlackBoxReplay::on(const CanArrival& arrival) {
@@ -201,6 +210,13 @@ void BlackBoxReplay::on(const LiveResult& live_result) {
     chain_.evaluate();
     const CycleResult made =
         chain_.decide(queried->event.state == ReceiverState::valid, queried->is_armed);
+    withheld_.reset();
+    if (!made.has_permit) {
+        withheld_ = {.reason = made.reason,
+                     .pair = made.pair,
+                     .snapshot = chain_.snapshot(),
+                     .unproven = chain_.unproven(made.pair)};
+    }
     if (guard_) {
         LiveResult dated = live_result;
         dated.result = made;
@@ -208,6 +224,7 @@ void BlackBoxReplay::on(const LiveResult& live_result) {
         chain_.update_advisories();
     }
     if (made.is_stop && !has_verdict_) {
+        stopped_ = withheld_;
         has_verdict_ = !runs_in_verdicts_;
         verdict_ = {.cause = GuardFault::verdict,
                     .reason = made.reason,

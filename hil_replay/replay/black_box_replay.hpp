@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/base/time_histogram.hpp"
+#include "core/guard/distance_need.hpp"
 #include "firmware_if/guard/black_box_record.hpp"
 #include "firmware_if/guard/guard_chain.hpp"
 #include "hil_replay/replay/recorded_guard.hpp"
@@ -33,6 +34,14 @@ struct BlackBoxStop {
     std::int64_t latched_us = 0;  // of the sample; 0: none
 };
 
+/// A cycle that withheld the permit or stopped, as the chain left it: what why_of is asked about.
+struct RefusedCycle {
+    StopReason reason = StopReason::none;
+    std::uint32_t pair = kNoIndex;
+    AxisSnapshot snapshot{};
+    UnprovenPair unproven{};
+};
+
 struct ReplayedBlackBox {
     std::uint64_t records = 0, frames_read = 0, frames_sent = 0, frames_refused = 0, echoes = 0,
                   lost = 0;
@@ -44,6 +53,9 @@ struct ReplayedBlackBox {
     std::optional<LiveResult> first_different;       // as recorded
     std::optional<SentComparison> sent;              // none: it does not go back to the start
     std::optional<BlackBoxStop> recorded, replayed;  // the last stop
+    // Of the stop that was replayed, if by a verdict; without a stop, of the last cycle, if it
+    // withheld the permit.
+    std::optional<RefusedCycle> refused;
 };
 
 /// Where the guard did not run once more, a stop by verdict or input follows from the frames; one
@@ -92,6 +104,7 @@ class BlackBoxReplay {
     void compare(const LiveResult& recorded, const CycleResult& made);
 
     void on_echo(const CanFrame& frame);
+    void compare_sent(ReplayedBlackBox& out);
 
     const Machine& machine_;
     LiveOptions options_;
@@ -104,6 +117,7 @@ class BlackBoxReplay {
     std::optional<ReceiverEvent> made_;  // by the last frame: a snapshot, or a look-ahead path
     std::deque<Heard> waiting_;          // for the engine's thread to take them
     std::optional<BlackBoxStop> verdict_, input_;  // the last stop of either kind that was found
+    std::optional<RefusedCycle> stopped_, withheld_;
     std::array<std::int64_t, kSyncCounterMax + 1> arrived_us_{};  // by SYNC counter; 0: none
     std::int64_t stop_since_us_ = 0;  // the sample whose verdict was a stop; 0: it was heard
     ReceiverFault recorded_fault_ = ReceiverFault::none;

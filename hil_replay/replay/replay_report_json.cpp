@@ -121,6 +121,50 @@ void add_course(const ReplayRun& run, Json& out) {
     }
 }
 
+Json faults_json(const ReceiverCounters& counters) {
+    Json out = Json::object();
+    for (std::uint32_t i = 1; i < kReceiverFaults; ++i) {
+        if (counters.faults[i] != 0) {
+            out[fault_row(static_cast<ReceiverFault>(i)).name] = counters.faults[i];
+        }
+    }
+    return out;
+}
+
+/// By name; with times where each pair was asked on its own.
+Json pairs_json(const ReplayReport& report) {
+    const ReplayRun& run = report.run;
+    const Machine& machine = report.loaded.machine;
+    const bool has_times = !run.is_stoppable() && report.gpu.empty();
+    Json out = Json::object();
+    for (std::uint32_t i = 0; i < machine.pairs.size(); ++i) {
+        Json pair = has_times ? time_json(run.pairs()[i].time) : Json::object();
+        pair["not_proven"] = run.pairs()[i].not_proven;
+        if (run.has_clearance_levels()) {
+            pair["slow"] = run.pairs()[i].slow;
+            pair["warn"] = run.pairs()[i].warn;
+        }
+        out[pair_name(machine, i)] = std::move(pair);
+    }
+    return out;
+}
+
+Json cycle_json(const ReplayRun& run) {
+    Json out = time_json(run.cycles());
+    out["median_us"] = us(run.cycles().at_share_ns(0.5));
+    return out;
+}
+
+Json slowest_json(const ReplayReport& report) {
+    Json out = Json::array();
+    for (const SlowCycle& slow : report.run.slowest()) {
+        out.push_back({{"us", us(slow.spent_ns)},
+                       {"time_us", slow.snapshot.arrived_us},
+                       {"axes", axes_json(report.loaded.machine, slow.snapshot)}});
+    }
+    return out;
+}
+
 /// Whether the trace was read as it should be; what not.
 void add_end(const TraceEnd& end, Json& out) {
     out["valid"] = end.fault.empty();
@@ -141,7 +185,6 @@ std::string describe_unread(const std::string& trace, const std::string& fault) 
     return text_of(out);
 }
 
-// NOLINTNEXTLINE(readability-function-size): one list of keys
 ReplayDocument describe_replay(const ReplayReport& report) {
     const ReplayRun& run = report.run;
     const Machine& machine = report.loaded.machine;
@@ -170,22 +213,8 @@ ReplayDocument describe_replay(const ReplayReport& report) {
         out["hashes_compared"] = run.hashes_heard();
     }
     add_course(run, out);
-    auto& faults = out["receiver_faults"] = Json::object();
-    for (std::uint32_t i = 1; i < kReceiverFaults; ++i) {
-        if (counters.faults[i] != 0) {
-            faults[fault_row(static_cast<ReceiverFault>(i)).name] = counters.faults[i];
-        }
-    }
-    auto& pairs = out["pairs"] = Json::object();
-    const bool has_times = !run.is_stoppable() && report.gpu.empty();
-    for (std::uint32_t i = 0; i < machine.pairs.size(); ++i) {
-        pairs[pair_name(machine, i)] = has_times ? time_json(run.pairs()[i].time) : Json::object();
-        pairs[pair_name(machine, i)]["not_proven"] = run.pairs()[i].not_proven;
-        if (run.has_clearance_levels()) {
-            pairs[pair_name(machine, i)]["slow"] = run.pairs()[i].slow;
-            pairs[pair_name(machine, i)]["warn"] = run.pairs()[i].warn;
-        }
-    }
+    out["receiver_faults"] = faults_json(counters);
+    out["pairs"] = pairs_json(report);
     if (run.has_clearance_levels()) {
         out["levels"] = clearance_levels_json(report);
     }
@@ -193,14 +222,8 @@ ReplayDocument describe_replay(const ReplayReport& report) {
         out["proofs"] = proofs_json(report);
     }
     out["limits"] = limits_json(machine, run.limits());
-    out["cycle"] = time_json(run.cycles());
-    out["cycle"]["median_us"] = us(run.cycles().at_share_ns(0.5));
-    auto& slowest = out["slowest"] = Json::array();
-    for (const SlowCycle& slow : run.slowest()) {
-        slowest.push_back({{"us", us(slow.spent_ns)},
-                           {"time_us", slow.snapshot.arrived_us},
-                           {"axes", axes_json(machine, slow.snapshot)}});
-    }
+    out["cycle"] = cycle_json(run);
+    out["slowest"] = slowest_json(report);
     auto& stops = out["stops"] = Json::array();
     for (const StopEvent& stop : run.stops()) {
         stops.push_back(stop_json(report, stop));

@@ -298,14 +298,8 @@ void ReplayRun::note_withheld(const CycleResult& result) {
         withheld_.limit = result.limit;
         withheld_.time_us = newest_.arrived_us;
         withheld_.snapshot = newest_;
-        withheld_.unproven = unproven(result.pair);
+        withheld_.unproven = chain_.unproven(result.pair);
     }
-}
-
-UnprovenPair ReplayRun::unproven(std::uint32_t pair) const noexcept {
-    return is_stoppable() && pair != kNoIndex
-               ? unproven_pair(machine_, *chain_.stop_certificate(), pair)
-               : UnprovenPair{};
 }
 
 void ReplayRun::note_clearance_levels() {
@@ -353,7 +347,7 @@ void ReplayRun::note_verdict(const CycleResult& result) {
                .limit = result.limit,
                .time_us = newest_.arrived_us,
                .snapshot = newest_,
-               .unproven = in_episode_ ? UnprovenPair{} : unproven(result.pair)});
+               .unproven = in_episode_ ? UnprovenPair{} : chain_.unproven(result.pair)});
 }
 
 void ReplayRun::note_stop(const StopEvent& stop) {

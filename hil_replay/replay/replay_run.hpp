@@ -196,7 +196,6 @@ class ReplayRun {
     void note_clearance_levels();
     void note_time(std::int64_t spent_ns, const AxisSnapshot& snapshot);
     void note_verdict(const CycleResult& result);
-    [[nodiscard]] UnprovenPair unproven(std::uint32_t pair) const noexcept;
     void note_guard();
     void note_fault(GuardFault cause, StopReason reason);
     void note_stop(const StopEvent& stop);

@@ -248,6 +248,8 @@ TEST_F(BlackBoxReplayTest, AStopIsFoundAgainAtTheSameSampleForTheSameReasonAndPa
     EXPECT_EQ(all["replayed"]["pair"], all["recorded"]["pair"]);
     EXPECT_EQ(all["replayed"]["latched_us"], all["recorded"]["latched_us"]);
     EXPECT_GT(all["recorded"]["latched_us"].get<long>(), 0);
+    EXPECT_EQ(all["why"]["pair"], "cutter-c");
+    EXPECT_GT(all["why"]["needed_mm"].get<double>(), all["why"]["available_mm"].get<double>());
     // It goes back to the start, so everything is compared.
     EXPECT_GT(all["verdicts"]["same"].get<long>(), 100);
     EXPECT_EQ(all["verdicts"]["different"], 0);
@@ -495,8 +497,15 @@ TEST_F(BlackBoxReplayTest, WhatWasWithheldBeforeArmingIsWithheldAgain) {
     const std::int64_t stop_us = replay(kExitCollision)["recorded"]["latched_us"];
     make_world();
     bool was_ready = false, was_withheld = false, was_armed = false;
+    nlohmann::json unstopped;
     world->play(there_and_back(loaded->machine, trace, stop_us), 0, [&] {
         was_withheld = was_withheld || (was_ready && phase() == GuardPhase::selftest);
+        if (unstopped.is_null() && world->guard->withheld().reason == StopReason::predicted) {
+            unstopped = replay(kExitClean);
+            EXPECT_NE(shop->out.find("withheld to the end: predicted, cutter-x\n  why (not_known)"),
+                      std::string::npos)
+                << shop->out;
+        }
         was_ready = was_ready || phase() == GuardPhase::ready;
         was_armed = (was_withheld && arm()) || was_armed;
         return phase() != GuardPhase::stopped;
@@ -509,6 +518,8 @@ TEST_F(BlackBoxReplayTest, WhatWasWithheldBeforeArmingIsWithheldAgain) {
     EXPECT_EQ(all["verdicts"]["different"], 0);
     EXPECT_EQ(all["pictures"]["different"], 0);
     EXPECT_NE(shop->out.find("withheld: predicted: cutter-c\n"), std::string::npos) << shop->out;
+    EXPECT_TRUE(unstopped["recorded"].is_null()) << unstopped.dump(1);
+    EXPECT_EQ(unstopped["why"]["cause"], "not_known") << unstopped.dump(1);
 }
 
 // A verdict that the frames do not give: the replay must say so, or it would say nothing at all.
