@@ -13,6 +13,7 @@
 
 #include "config/machine/effective_text.hpp"
 #include "config/text/quote_text.hpp"
+#include "firmware_if/cli/command_files.hpp"
 #include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/guard_exit.hpp"
@@ -29,6 +30,7 @@
 #include "hil_replay/replay/replay_report.hpp"
 #include "hil_replay/replay/replay_run.hpp"
 #include "hil_replay/trace/candump_log.hpp"
+#include "hil_replay/trace/program_lines.hpp"
 #include "hil_replay/trace/trace_period.hpp"
 #include "hil_replay/trace/trace_reader.hpp"
 
@@ -333,7 +335,11 @@ void add_replay(CommandLine& line) {
     command.add_option("--device", arguments->device, "read only the frames of this interface");
     command.add_flag("--lenient", arguments->lenient, "skip and count invalid lines");
     add_json_option(command, arguments->json);
-    command.set_action([arguments] { return replay(*arguments); });
+    command.set_action([arguments, files = command.files()] {
+        const std::string lines = program_lines_name(arguments->trace);  // read without an option
+        return are_apart(*files, {lines}, stderr) ? replay(*arguments)
+                                                  : static_cast<int>(kExitUsage);
+    });
 }
 
 }  // namespace axg

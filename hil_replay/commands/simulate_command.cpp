@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "config/compiled/compiled_machine.hpp"
+#include "config/text/quote_text.hpp"
 #include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/json_output.hpp"
@@ -86,7 +87,7 @@ bool write_program_lines(const SimulateArguments& arguments, ProgramLines& lines
     if (!std::filesystem::is_regular_file(arguments.output, error)) {
         return true;
     }
-    lines.trace_bytes = std::filesystem::file_size(arguments.output, error);
+    set_trace(lines, arguments.output);
     lines.program = arguments.gcode.program;
     std::ifstream program(lines.program, std::ios::binary);
     add_blocks(lines, std::string{std::istreambuf_iterator<char>(program), {}});
@@ -191,7 +192,15 @@ void add_simulate(CommandLine& line) {
         .between(0.0, 10.0)
         .shows_default();
     add_json_option(command, arguments->json);
-    command.set_action([arguments] { return run_simulate(*arguments); });
+    command.set_action([arguments] {
+        const std::string lines = program_lines_name(arguments->output);  // written too
+        if (is_same_file(lines, arguments->gcode.program)) {
+            fmt::print(stderr, "--output: {}: is the same file as PROGRAM. Pass another name.\n",
+                       escaped(lines, 4096));
+            return static_cast<int>(kExitUsage);
+        }
+        return run_simulate(*arguments);
+    });
 }
 
 }  // namespace axg

@@ -58,9 +58,9 @@ function whySentences(why) {
   if (remedies.margin_mm !== undefined) {
     proven.push(`a margin of ${remedies.margin_mm.toFixed(3)} mm`);
   }
-  if (remedies.queries) proven.push(`a larger plan: ${remedies.queries} queries of this pair`);
+  if (remedies.queries) proven.push(`a larger plan, in which this pair takes ${remedies.queries} queries`);
   if (remedies.limits) proven.push(`limits as this trace shows them: ${remedies.limits}`);
-  out.push(proven.length > 0 ? `proven with: ${proven.join("; ")}`
+  out.push(proven.length > 0 ? `this sample is proven with: ${proven.join("; ")}`
                              : "nothing that was tried proves it");
   return out;
 }

@@ -60,8 +60,9 @@ std::string remedies_text(const StopWhy& why) {
         add(fmt::format("a margin of {:.3f} mm", *remedies.margin_mm));
     }
     if (remedies.queries) {
-        add(fmt::format("a larger plan: {} queries of this pair (cycle: in the machine file)",
-                        *remedies.queries));
+        add(fmt::format(
+            "a larger plan, in which this pair takes {} queries (cycle: in the machine file)",
+            *remedies.queries));
     }
     if (remedies.are_other_limits) {
         add("limits as this trace shows them: " + why.other_limits);
@@ -117,8 +118,9 @@ std::string format_why(const Machine& machine, const StopWhy& why) {
         text += "    a list of the engine was full (cycle: in the machine file)\n";
     }
     const std::string remedies = remedies_text(why);
-    return text + (remedies.empty() ? "    nothing that was tried proves it\n"
-                                    : fmt::format("    proven with: {}\n", remedies));
+    return text + (remedies.empty()
+                       ? "    nothing that was tried proves it\n"
+                       : fmt::format("    this sample is proven with: {}\n", remedies));
 }
 
 }  // namespace axg

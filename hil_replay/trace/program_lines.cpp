@@ -5,7 +5,9 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
+#include <fstream>
 #include <span>
 #include <system_error>
 
@@ -16,7 +18,7 @@
 namespace axg {
 namespace {
 
-constexpr std::string_view kTitle = "axguard program lines 1";
+constexpr std::string_view kTitle = "axguard program lines 2";
 constexpr std::size_t kBlockBytesMax = 200;
 constexpr std::size_t kFileBytesMax = 256U << 20U;
 
@@ -64,6 +66,18 @@ bool take_key(std::string_view& text, std::string_view key, std::string_view& va
     return true;
 }
 
+/// 0: it cannot be read.
+std::uint32_t crc_of_file(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::array<std::uint8_t, 1U << 16U> bytes{};
+    std::uint32_t crc = 0;
+    while (file) {
+        file.read(reinterpret_cast<char*>(bytes.data()), bytes.size());
+        crc = crc32({bytes.data(), static_cast<std::size_t>(file.gcount())}, crc);
+    }
+    return crc;
+}
+
 bool exists(const std::string& path, std::uint64_t& size_bytes) {
     struct stat state {};
     if (stat(path.c_str(), &state) != 0) {
@@ -98,6 +112,11 @@ void add_program_step(ProgramLines& lines, std::int64_t time_us, std::uint32_t l
     }
 }
 
+void set_trace(ProgramLines& lines, const std::string& trace) {
+    (void)exists(trace, lines.trace_bytes);
+    lines.trace_crc = crc_of_file(trace);
+}
+
 void add_blocks(ProgramLines& lines, std::string_view program_text) {
     lines.program_crc = crc_of(program_text);
     std::vector<std::string_view> blocks{{}};  // line 0 is none
@@ -111,8 +130,9 @@ void add_blocks(ProgramLines& lines, std::string_view program_text) {
 }
 
 std::string program_lines_text(const ProgramLines& lines) {
-    std::string text = fmt::format("{}\nprogram {}\nprogram_crc32 {:08x}\ntrace_bytes {}\n", kTitle,
-                                   lines.program, lines.program_crc, lines.trace_bytes);
+    std::string text =
+        fmt::format("{}\nprogram {}\nprogram_crc32 {:08x}\ntrace_bytes {}\ntrace_crc32 {:08x}\n",
+                    kTitle, lines.program, lines.program_crc, lines.trace_bytes, lines.trace_crc);
     for (const ProgramStep& step : lines.steps) {
         text += fmt::format("{} {} {}\n", step.time_us, step.line, step.block);
     }
@@ -125,10 +145,11 @@ std::string read_program_lines(const std::string& name, std::string_view text, P
                           ": no program lines: the file is damaged or was written by another "
                           "version. Run axguard simulate again.";
     ProgramLines lines;
-    std::string_view program, crc, bytes;
+    std::string_view program, crc, bytes, trace_crc;
     if (!take_checksum(text) || take_line(text) != kTitle || !take_key(text, "program ", program) ||
         !take_key(text, "program_crc32 ", crc) || !take_key(text, "trace_bytes ", bytes) ||
-        !take_number(crc, lines.program_crc, 16) || !take_number(bytes, lines.trace_bytes)) {
+        !take_key(text, "trace_crc32 ", trace_crc) || !take_number(crc, lines.program_crc, 16) ||
+        !take_number(bytes, lines.trace_bytes) || !take_number(trace_crc, lines.trace_crc, 16)) {
         return damaged;
     }
     lines.program = program;
@@ -166,11 +187,12 @@ std::string load_program_lines(const std::string& trace, const std::string& path
     if (std::string fault = read_program_lines(name, text, lines); !fault.empty()) {
         return fault;
     }
-    if (!exists(trace, size_bytes) || size_bytes != lines.trace_bytes) {
+    if (!exists(trace, size_bytes) || size_bytes != lines.trace_bytes ||
+        crc_of_file(trace) != lines.trace_crc) {
         return fmt::format(
-            "{}: no program lines: the file belongs to another trace (found one of {} bytes, "
-            "expected {}). Run axguard simulate again.",
-            name, size_bytes, lines.trace_bytes);
+            "{}: no program lines: they belong to another trace, of {} bytes and CRC {:08x}; {} "
+            "has {} bytes. Run axguard simulate again.",
+            name, lines.trace_bytes, lines.trace_crc, trace, size_bytes);
     }
     std::string program;
     std::string note;

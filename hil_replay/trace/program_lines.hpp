@@ -21,7 +21,8 @@ struct ProgramStep {
 struct ProgramLines {
     std::string program;             // its file, as it was named
     std::uint32_t program_crc = 0;   // of its content
-    std::uint64_t trace_bytes = 0;   // size of the trace that the table belongs to
+    std::uint64_t trace_bytes = 0;   // of the trace that the table belongs to
+    std::uint32_t trace_crc = 0;     // crc32 of it
     std::vector<ProgramStep> steps;  // in order of time
 
     [[nodiscard]] bool is_empty() const noexcept { return steps.empty(); }
@@ -32,6 +33,8 @@ struct ProgramLines {
 
 /// Begins a step where the line differs from the last one.
 void add_program_step(ProgramLines& lines, std::int64_t time_us, std::uint32_t line);
+/// Size and checksum of the trace that the table is for.
+void set_trace(ProgramLines& lines, const std::string& trace);
 /// The block of each step's line, and the checksum of the program.
 void add_blocks(ProgramLines& lines, std::string_view program_text);
 

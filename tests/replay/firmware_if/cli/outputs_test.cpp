@@ -39,10 +39,13 @@ TEST_F(Outputs, NoneIsAnInput) {
     fs::create_hard_link(shop.file("t.log"), shop.file("hard.log"));
     fs::create_symlink("t.log", shop.file("soft.log"));
     expect_refused("simulate " + kMachine + " p.ngc -o p.ngc", "p.ngc");
+    fs::copy_file(shop.file("p.ngc"), shop.file("p.lines"));  // where the lines of "p" would be
+    expect_refused("simulate " + kMachine + " p.lines -o p", "p.lines");
     for (const char* const name : {"t.log", "./t.log", "hard.log", "soft.log"}) {
         const std::string replay = "replay " + kMachine + " t.log ";
         for (const char* const option : {"--csv ", "--frames-out ", "--report ", "--json="}) {
             expect_refused(replay + option + name, "t.log");
+            expect_refused(replay + option + "t.log.lines", "t.log.lines");
         }
         expect_refused("inspect t.log --json=" + std::string(name), "t.log");
     }

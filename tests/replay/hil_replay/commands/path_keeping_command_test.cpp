@@ -71,6 +71,11 @@ TEST_F(PathKeepingCommand, StopsLaterThanABoxAndBeforeTheContact) {
     EXPECT_LT(free["time_us"], keeps["time_us"]);
     EXPECT_LT(keeps["time_us"], contact["time_us"]);
     EXPECT_GT(keeps["pairs"].at(0)["clearance_mm"].get<double>(), 0);
+    // A path is one whole: its reach has no parts, and no speed is named that would be proven.
+    EXPECT_GT(keeps["why"]["to_standstill_mm"].get<double>(), 0) << keeps.dump(1);
+    EXPECT_FALSE(keeps["why"].contains("braking_mm") ||
+                 keeps["why"]["remedies"].contains("speed_share"))
+        << keeps.dump(1);
 }
 
 TEST_F(PathKeepingCommand, TheBoardOfTheLoopStopsAlongItsPath) {
@@ -78,6 +83,7 @@ TEST_F(PathKeepingCommand, TheBoardOfTheLoopStopsAlongItsPath) {
         << shop.out << shop.err;
     const auto driven = document("drive.json");
     EXPECT_EQ(driven["guard_stop"]["reason"], "predicted");
+    EXPECT_GT(driven["guard_stop"]["why"]["to_standstill_mm"].get<double>(), 0);
     EXPECT_EQ(driven["state"], "stopped");
     EXPECT_EQ(run("drive", "keeps.yaml", test::kCleanProgram + " --json=clean.json"), kExitClean)
         << shop.out << shop.err;

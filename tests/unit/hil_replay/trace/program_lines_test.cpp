@@ -14,6 +14,7 @@ ProgramLines some_lines() {
     ProgramLines lines;
     lines.program = "part one.ngc";
     lines.trace_bytes = 5;
+    lines.trace_crc = 0xCBF53A1C;  // of "12345"
     for (const std::int64_t k : {0, 1, 2, 3, 4, 5}) {
         add_program_step(lines, 1000 * k, k < 2 ? 0U : k < 4 ? 1U : 3U);
     }
@@ -64,10 +65,13 @@ TEST(ProgramLines, OfAnotherTraceAreNotUsed) {
     (void)shop.write("t.log.lines", program_lines_text(some_lines()));
     EXPECT_EQ(load_program_lines(trace, "", read), "");
     EXPECT_FALSE(read.is_empty());
-    (void)shop.write("t.log", "123456");
-    EXPECT_NE(load_program_lines(trace, "", read).find("another trace (found one of 6 bytes"),
-              std::string::npos);
-    EXPECT_TRUE(read.is_empty());
+    for (const char* const other : {"123456", "12354"}) {  // longer, and of the same length
+        (void)shop.write("t.log", other);
+        EXPECT_NE(load_program_lines(trace, "", read).find("they belong to another trace, of 5"),
+                  std::string::npos)
+            << other;
+        EXPECT_TRUE(read.is_empty());
+    }
 }
 
 TEST(ProgramLines, AChangedProgramIsReportedAndItsOldBlocksAreKept) {
