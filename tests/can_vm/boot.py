@@ -45,7 +45,8 @@ def memory_folder():
 def settle(cpu):
     """One processor: user-mode Linux switches between processes at every system call, which is ten
     times slower between two. Before other programs, where that is allowed: the guest's clock is the
-    host's, so a guest that waits for a processor is a machine that stood still."""
+    host's, so a guest that waits for a processor is a machine that stood still. A guest that is
+    never idle stands still too: of each second the host keeps 50 ms from programs in real time."""
     os.sched_setaffinity(0, {cpu})
     try:
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(10))

@@ -117,6 +117,7 @@ def watch_a_guard():
     guard.arm()
     armed = watch.wait_for(lambda state: state["kind"] == "armed" and state["permit"] and
                            state["permit"]["answer"] == "right" and state["axes"], guard)
+    guard.check_busy()
     expect(armed["guard"]["same_machine"] and armed["guard"]["machine"] == "paper-trunnion", armed)
     expect(armed["permit"]["word"] in ("run", "slow") and armed["bus"]["bad"] == 0, armed)
     bus = Bus(only=(PERMIT,))

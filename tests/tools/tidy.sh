@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # clang-tidy over every room and program, with the flags of a clang build of them; by day without
-# the analyzer where nothing is decided: commands, reports, programs, the workbench. The tests are
-# left out: their macros take the analyzer half a minute a file.
+# the analyzer but in core, where it is decided. The tests are left out: their macros take the
+# analyzer half a minute a file.
 # Example: tests/tools/tidy.sh host-clang [--night]
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
@@ -20,7 +20,7 @@ tidy() { # CHECKS PATHSPEC...: these besides those of .clang-tidy
         xargs -0 -n 1 -P "${AXG_JOBS:-$(nproc)}" clang-tidy-14 --quiet -p "$database" \
             "--checks=$checks"
 }
-text=(firmware_if/axguardd firmware_if/c_interface firmware_if/cli hil_replay)
+text=(config firmware_if hil_replay)
 code=0
 tidy '' '*.cpp' ':!tests/' ':!cuda/' "${text[@]/#/:!}" || code=1
 tidy "$([[ ${2:-} == --night ]] || echo '-clang-analyzer-*')" "${text[@]/%//*.cpp}" || code=1
