@@ -13,14 +13,6 @@ foreach(kind unit property parity)
   list(JOIN AXG_EMULATED_${kind} "|" AXG_EMULATED_${kind})
 endforeach()
 
-# At the usual counts some take minutes, under an emulator or with sanitizers.
-function(axg_property_counts)
-  foreach(count IN LISTS ARGN)
-    string(REGEX MATCH "(.*)=(.*)" matched ${count})
-    set_property(TEST property.${CMAKE_MATCH_1} PROPERTY ENVIRONMENT AXG_COUNT=${CMAKE_MATCH_2})
-  endforeach()
-endfunction()
-
 function(axg_emulated_tests)
   add_custom_target(emulated_tests DEPENDS axguard axguard-lab axguardd axg_c guard_a_trace
                     axg_lane_hash axg_make_scene unit_tests property_tests parity_tests)
@@ -30,8 +22,12 @@ function(axg_emulated_tests)
       set_property(TEST ${kind}.${name} APPEND PROPERTY LABELS emulated)
     endforeach()
   endforeach()
-  axg_property_counts(joint_box_proof_test=20 certified_pairs_test=30000 containment_test=20
-                      engine_metamorphic_test=200 engine_test=200 stop_reach_test=2000)
+  # At the usual counts some take minutes.
+  foreach(count joint_box_proof_test=20 certified_pairs_test=30000 containment_test=20
+          engine_metamorphic_test=200 engine_test=200 stop_reach_test=2000)
+    string(REGEX MATCH "(.*)=(.*)" matched ${count})
+    set_property(TEST property.${CMAKE_MATCH_1} PROPERTY ENVIRONMENT AXG_COUNT=${CMAKE_MATCH_2})
+  endforeach()
   # NEON is the one set of lanes there; equal_verdicts.sh compares it with those of other builds.
   set_property(TEST property.engine_test APPEND PROPERTY ENVIRONMENT
                GTEST_FILTER=-EngineProperty.EveryLaneSetGivesEqualBits)

@@ -18,8 +18,8 @@ struct IniAxis {
     char letter = 'X';
     bool is_rotary = false;     // A B C
     bool is_unlimited = false;  // WRAPPED_ROTARY, or a rotary axis without limits within ten turns
-    bool follows_tip =
-        false;  // kinematics for the tip: LinuxCNC does not limit this joint's motion
+    /// Kinematics for the tip: LinuxCNC limits the tip, and the speed of no joint.
+    bool follows_tip = false;
     std::optional<double> min, max;                   // mm or degrees
     std::optional<double> speed, acceleration, jerk;  // a second
 };

@@ -50,7 +50,7 @@ def some_are_lost():
     link = Link("vxcan1", "loss", "1%")
     count = permits(2)
     guard.check_busy()
-    expect(count > 100, "permits go on", count, *guard.lines)  # of 400; late cycles have none
+    expect(count > 200, "permits go on", count, *guard.lines)
     dropped = int(link.statistics().split("dropped ")[1].split(",")[0])
     _, report = guard.end()
     expect(dropped > 0 and report["samples_lost"] > 0, "nothing was lost", dropped, report)

@@ -5,7 +5,7 @@ import struct
 import threading
 import time
 
-from vm_bus import PERIOD_US, PERMIT, STOP, Bus, Busy, Guard, attempt, expect
+from vm_bus import PERIOD_US, PERMIT, STOP, Bus, Guard, attempt, expect
 
 SYNC = 0x080
 NODES = (3, 4, 5, 6, 7)
@@ -86,8 +86,8 @@ def guard_sends_sync():
         frames = drives.frames[begin:]
         counters = [data[0] for identifier, data in frames if identifier == SYNC]
         steps = {(b - a) % 240 for a, b in zip(counters, counters[1:])}
-        if len(counters) < 0.5e6 / PERIOD_US or not steps <= {1, 2, 3}:
-            raise Busy(f"{len(counters)} SYNC, steps {steps}")
+        expect(len(counters) > 0.5e6 / PERIOD_US, "SYNC each period", len(counters))
+        expect(steps <= {1, 2, 3}, "its counter numbers the periods", steps)
         heard, permits = [], 0
         for identifier, data in frames:
             if identifier == SYNC:
