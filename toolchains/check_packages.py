@@ -28,12 +28,11 @@ LIBRARIES = {"libc.so.6": "libc6", "libm.so.6": "libc6", "ld-linux-aarch64.so.1"
              "libcudart.so.12": "cuda-cudart-12-6",
              "libfmt.so.9": "libfmt9", "libmd.so.0": "libmd0",
              "libmeshoptimizer.so.2d": "libmeshoptimizer2d",
-             "libmicrohttpd.so.12": "libmicrohttpd12", "liblinuxcnchal.so.0": "linuxcnc-uspace"}
+             "libmicrohttpd.so.12": "libmicrohttpd12"}
 DEV_OF = {"libc6": "libc6-dev", "libgcc-s1": "libgcc-12-dev", "libstdc++6": "libstdc++-12-dev",
           "zlib1g": "zlib1g-dev", "libgmp10": "libgmp-dev", "libgmpxx4ldbl": "libgmp-dev",
           "libyaml-cpp0.7": "libyaml-cpp-dev", "libfmt9": "libfmt-dev", "libmd0": "libmd-dev",
-          "libmeshoptimizer2d": "libmeshoptimizer-dev", "libmicrohttpd12": "libmicrohttpd-dev",
-          "linuxcnc-uspace": "linuxcnc-uspace-dev"}
+          "libmeshoptimizer2d": "libmeshoptimizer-dev", "libmicrohttpd12": "libmicrohttpd-dev"}
 PACKAGES = {"axguard", "axguardd", "axguard-board-dev", "axguard-doc", "axguard-lab", "libaxguard0",
             "libaxguard-dev"}
 
@@ -195,9 +194,7 @@ def main():
         opened = [check_package(checks, package, build, listed, pathlib.Path(temporary))
                   for package in packages]
         names = {name for _, name, _ in opened}
-        is_amd64 = any(package.stem.endswith("_amd64") for package in packages)
-        wanted = PACKAGES | ({"axguard-linuxcnc"} if is_amd64 else set())  # debian/control
-        checks.expect(names == wanted, f"packages: {sorted(names)}")
+        checks.expect(names == PACKAGES, f"packages: {sorted(names)}")
         own = {path.name for into, _, _ in opened for path in into.rglob("*.so*")}
         programs = 0
         for into, name, depends in opened:
