@@ -14,7 +14,7 @@ import subprocess
 import sys
 import tempfile
 
-LIMIT_S = int(os.environ.get("AXG_VM_LIMIT_S", "240"))  # a record takes longer than a test
+LIMIT_S = int(os.environ.get("AXG_VM_LIMIT_S", "440"))  # a record takes longer than a test
 MODULES = ["can", "can-raw", "can-dev", "vcan", "vxcan", "slcan", "sch_netem", "overlay"]
 
 

@@ -291,6 +291,6 @@ prepare_once()
 for name in sys.argv[1:]:
     if name == "broken":
         for error in BROKEN:
-            attempt(is_found_out, error, times=3)
+            attempt(is_found_out, error)
     else:
-        attempt(follow, f"docs/guide/{name}.md", times=3)
+        attempt(follow, f"docs/guide/{name}.md")

@@ -48,14 +48,13 @@ def expect(is_true, *words):
         fail(*words)
 
 
-def attempt(scenario, *arguments, times=6):
-    """Runs it until the guest did not stand still; skips the whole script if it always does, or
-    ends before another attempt could (its clock began with it)."""
-    longest = 0.0
-    for _ in range(times):
-        began = time.monotonic()
-        if began + longest + 10 > LIMIT_S:
-            break
+def attempt(scenario, *arguments):
+    """Runs it until the guest did not stand still, later each time, for a host is busy for seconds;
+    skips the whole script when it would end before another attempt could (its clock began with it).
+    """
+    longest, pause = 0.0, 0.0
+    while (began := time.monotonic() + pause) + longest + 10 < LIMIT_S:
+        time.sleep(pause)
         subprocess.run("rm -f /run/*.latch", shell=True, check=True)
         try:
             scenario(*arguments)
@@ -64,6 +63,7 @@ def attempt(scenario, *arguments, times=6):
         except Busy as busy:
             print("the guest stood still:", busy, flush=True)
             longest = max(longest, time.monotonic() - began)
+            pause = min(2 * pause + 0.5, 15.0)
         finally:
             while RUNNING:
                 process = RUNNING.pop()
