@@ -8,7 +8,8 @@
 
 namespace axg {
 
-/// Indented by two, with an end of line. Bytes that are not UTF-8 are replaced.
+/// Indented by two, with an end of line. In ASCII, so that no name can turn the text around it;
+/// bytes that are not UTF-8 are replaced.
 [[nodiscard]] std::string text_of(const nlohmann::ordered_json& document);
 
 }  // namespace axg

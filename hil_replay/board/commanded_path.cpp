@@ -17,7 +17,7 @@ constexpr double kRestRatio = 1e-9;  // s or s2: of axes that stand, no division
 CommandedPath::CommandedPath(const Machine& machine, std::span<const double> start,
                              CommandedMotion motion, std::int64_t tick_us)
     : machine_(machine), motion_(std::move(motion)), tick_us_(tick_us) {
-    start_.tool = machine.first_tool;
+    start_.tick.tool = machine.first_tool;
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
         start_.axes[i].position = start[i];
     }
@@ -34,10 +34,10 @@ void CommandedPath::compute_until(double time_us) {
         const MotionTick tick = motion_({lead_.data(), count});
         if (tick.is_over) {
             is_over_ = true;
-            end_ = {lead_, tick.tool};
+            end_ = {lead_, tick};
             return;
         }
-        pieces_.push_back({lead_, tick.tool});
+        pieces_.push_back({lead_, tick});
         computed_us_ += tick_us_;
         for (std::size_t i = 0; i < count; ++i) {
             lead_[i] = moved_on(lead_[i], static_cast<double>(tick_us_) * kSecondsPerUs);
@@ -66,8 +66,8 @@ AxisMotions CommandedPath::at(double time_us) {
     return out;
 }
 
-std::uint16_t CommandedPath::tool_at(double time_us) {
-    return piece_at(time_us).tool;
+MotionTick CommandedPath::tick_at(double time_us) {
+    return piece_at(time_us).tick;
 }
 
 bool CommandedPath::is_over(double time_us) {

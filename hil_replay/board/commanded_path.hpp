@@ -18,6 +18,7 @@ namespace axg {
 struct MotionTick {
     bool is_over = false;  // nothing moves any more
     std::uint16_t tool = 0;
+    std::uint32_t line = 0;  // of the program; 0: of none
 };
 
 /// Sets the jerk of every axis for the next tick, and may correct the state that the last one left.
@@ -34,8 +35,8 @@ class CommandedPath {
 
     /// The commands at an instant, computed as far as that is needed.
     [[nodiscard]] AxisMotions at(double time_us);
-    /// The tool commanded for an instant.
-    [[nodiscard]] std::uint16_t tool_at(double time_us);
+    /// Tool and line commanded for an instant.
+    [[nodiscard]] MotionTick tick_at(double time_us);
     /// Whether the motion is over by then.
     [[nodiscard]] bool is_over(double time_us);
 
@@ -49,7 +50,7 @@ class CommandedPath {
   private:
     struct Piece {
         AxisMotions axes{};
-        std::uint16_t tool = 0;
+        MotionTick tick{};
     };
     void compute_until(double time_us);
     [[nodiscard]] const Piece& piece_at(double time_us);

@@ -173,6 +173,7 @@ void MotionBoard::drive(std::int64_t until_us) {
         if (now_us_ == tick_ends_us_) {
             const MotionTick tick = motion_({axes_.data(), count});
             tool_ = tick.tool;
+            line_ = tick.line;
             tick_ends_us_ = now_us_ + options_.tick_us;
             if (tick.is_over) {
                 state_ = BoardState::finished;
@@ -241,7 +242,9 @@ void MotionBoard::keep_cap() {
 void MotionBoard::follow(std::int64_t until_us) {
     const auto until = static_cast<double>(until_us);
     set_from_path(until, until_us);
-    tool_ = path_->tool_at(until);
+    const MotionTick tick = path_->tick_at(until);
+    tool_ = tick.tool;
+    line_ = tick.line;
     path_->forget_before(until);
     if (path_->is_over(until)) {
         state_ = BoardState::finished;

@@ -122,6 +122,8 @@ class MotionBoard {
         return {axes_.data(), machine_.axes.size()};
     }
     [[nodiscard]] std::uint16_t tool() const noexcept { return tool_; }
+    /// Of the program, where the axes are; 0: of none.
+    [[nodiscard]] std::uint32_t line() const noexcept { return line_; }
     [[nodiscard]] std::uint64_t samples() const noexcept { return sample_; }
     [[nodiscard]] std::int64_t moving_since_us() const noexcept { return moving_since_us_; }
     [[nodiscard]] EncodeResult encode_status() const noexcept { return encoded_; }
@@ -175,6 +177,7 @@ class MotionBoard {
     std::int64_t now_us_ = kBoardStartUs, tick_ends_us_ = kBoardStartUs;
     std::int64_t moving_since_us_ = INT64_MIN, person_us_ = kNever;
     std::uint16_t tool_ = 0;
+    std::uint32_t line_ = 0;
 
     std::uint64_t sample_ = 0;
     std::int64_t nominal_us_ = kBoardStartUs, next_us_ = kBoardStartUs;

@@ -149,10 +149,13 @@ std::optional<StopWhy> why_of_refused(const ReplayedBlackBox& result, const WhyS
 }
 
 void print_why(const ReplayedBlackBox& result, const std::optional<StopWhy>& why,
-               const Machine& machine, std::FILE* words) {
+               const ProgramLines& lines, const Machine& machine, std::FILE* words) {
     if (!result.recorded && result.refused) {
         fmt::print(words, "permit withheld to the end: {}\n",
                    reason_text(result.refused->reason, result.refused->pair, machine, ", "));
+    }
+    if (result.refused) {
+        fmt::print(words, "{}", format_step_at(lines, result.refused->snapshot.arrived_us));
     }
     if (why) {
         fmt::print(words, "{}", format_why(machine, *why));
@@ -172,14 +175,18 @@ void print_times(const ReplayedBlackBox& result, std::FILE* words) {
     }
 }
 
-/// Every record: judged, its notes printed, its frames written down.
+/// Every record: judged, its notes printed, its frames written down, its samples matched.
 void feed(BlackBoxFile& black_box, BlackBoxReplay& replay, CandumpWriter* frames,
-          const Machine& machine, std::FILE* words) {
+          ProgramFinder* program, const Machine& machine, std::FILE* words) {
     BlackBoxRecord record;
     while (black_box.next(record)) {
         replay.on_record(record);
         if (const auto* note = std::get_if<LiveNote>(&record.entry.content)) {
             print_note(*note, machine, words);
+        }
+        const auto* query = std::get_if<LiveQuery>(&record.entry.content);
+        if (program != nullptr && query != nullptr && query->kind == LiveQuery::Kind::snapshot) {
+            program->add(query->event.snapshot);
         }
         const auto* arrival = std::get_if<CanArrival>(&record.entry.content);
         if (arrival != nullptr && frames != nullptr) {
@@ -224,7 +231,9 @@ int judge(const BlackBoxArguments& arguments, BlackBoxFile& black_box, const Loa
     if (black_box.header().is_stoppable) {
         fmt::print(words, "plan: {}\n", format_plan(black_box.header().plan));
     }
-    feed(black_box, replay, frames ? &*frames : nullptr, machine, words);
+    feed(black_box, replay, frames ? &*frames : nullptr, arguments.program, machine, words);
+    const ProgramLines lines =
+        arguments.program != nullptr ? arguments.program->finish() : ProgramLines{};
     const ReplayedBlackBox result = replay.result();
     fmt::print(words, "{:.3f} s, {} records, {} lost; frames: {} read, {} sent, {} refused\n",
                static_cast<double>(result.last_us - result.first_us) * 1e-6, result.records,
@@ -234,13 +243,14 @@ int judge(const BlackBoxArguments& arguments, BlackBoxFile& black_box, const Loa
     print_sent(result, words);
     print_stop(result, machine, words);
     const std::optional<StopWhy> why = why_of_refused(result, {loaded, chain.engine()});
-    print_why(result, why, machine, words);
+    print_why(result, why, lines, machine, words);
     print_times(result, words);
     if (!black_box.error().empty()) {
         fmt::print(stderr, "{}\n", black_box.error());
     }
-    bool is_written = write_json(
-        arguments.json, describe_black_box({arguments.file, machine, black_box, result, why}));
+    bool is_written =
+        write_json(arguments.json,
+                   describe_black_box({arguments.file, machine, black_box, result, why, lines}));
     if (frames && !frames->finish()) {
         fmt::print(stderr, "{}\n", frames->error());
         is_written = false;

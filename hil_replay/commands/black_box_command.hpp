@@ -6,13 +6,15 @@
 
 #include "firmware_if/cli/json_output.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
+#include "hil_replay/place/program_finder.hpp"
 
 namespace axg {
 
 struct BlackBoxArguments {
     std::string file, engine;
-    std::string frames_out{};  // candump log of every frame in it; empty: none
-    bool any_machine = false;  // judge with another machine than the dump's
+    std::string frames_out{};          // candump log of every frame in it; empty: none
+    bool any_machine = false;          // judge with another machine than the dump's
+    ProgramFinder* program = nullptr;  // opened; null: no program
     JsonOutput json{};
 };
 

@@ -219,6 +219,9 @@ std::string describe_black_box(const BlackBoxReport& report) {
                       ? Json{{"same", result.sent->same}, {"different", result.sent->different}}
                       : Json(nullptr);
     out["is_reproduced"] = can_be_reproduced(result) ? Json(is_reproduced(result)) : Json(nullptr);
+    if (result.refused) {
+        add_program_line(report.lines, result.refused->snapshot.arrived_us, out);
+    }
     out["why"] = report.why ? why_json(machine, *report.why) : Json(nullptr);
     out["damage"] = report.black_box.error();
     return text_of(out);

@@ -14,6 +14,7 @@ namespace axg {
 class BlackBoxFile;
 class TraceReader;
 struct GcodeResult;
+struct ProgramLines;
 struct ReplayedBlackBox;
 struct SimulationSummary;
 struct StopWhy;
@@ -51,6 +52,7 @@ struct BlackBoxReport {
     const BlackBoxFile& black_box;
     const ReplayedBlackBox& result;
     const std::optional<StopWhy>& why;  // of result.refused
+    const ProgramLines& lines;          // empty: no program
 };
 [[nodiscard]] std::string describe_black_box(const BlackBoxReport& report);
 

@@ -108,7 +108,7 @@ bool write_page_of(const DriveArguments& arguments, const LoadedMachine& loaded,
 BusDriveResult play(const DriveArguments& arguments, const LoadedMachine& loaded, SocketCan& wire,
                     std::span<const double> start, CommandedMotion motion,
                     const BusDriveOptions& options, PathRecord& path,
-                    std::deque<BoardSample>& samples) {
+                    std::deque<BoardSample>& samples, ProgramLines& lines) {
     const Machine& machine = loaded.machine;
     std::atomic<BoardState> state{BoardState::waiting};
     std::atomic<bool> is_over{false};
@@ -119,6 +119,7 @@ BusDriveResult play(const DriveArguments& arguments, const LoadedMachine& loaded
     };
     observers.each = [&](const MotionBoard& board) {
         state.store(board.state());
+        add_program_step(lines, board.next_latch_us() - machine.can.sample_us, board.line());
         if (wants_samples) {
             samples.push_back(sample_of(board, machine.can.sample_us));
         }
@@ -237,12 +238,14 @@ int run_bus_drive(const DriveArguments& arguments) {
         arguments.obeys_cap || keeps_cap ? motion_seconds(reading.program, limits, motion) : 0;
     PathRecord path;
     std::deque<BoardSample> samples;
+    ProgramLines lines{.program = arguments.gcode.program};
     catch_signals();
     const BusDriveResult result =
         play(arguments, loaded, *wire, {gcode.start.data(), machine.axes.size()},
              make_program_motion(reading.program, limits, motion, share, &lost_s), options, path,
-             samples);
+             samples, lines);
     release_signals();
+    add_blocks(lines, reading.text);
     PathJudge judge(machine, parts.engine->engine(), containment_test);
     path.show(judge);
     const bool is_finished = result.drive.state == BoardState::finished;
@@ -255,6 +258,7 @@ int run_bus_drive(const DriveArguments& arguments) {
                        machine.guard.speed_cap || keeps_cap,
                        is_finished ? whole_s : 0};
     report.contact = judge.contact();
+    report.lines = std::move(lines);
     report.bus = BusReport{.interface = arguments.bus, .wire = result.wire};
     if (!is_finished) {
         look_for_ways_out(arguments, loaded, containment_test, read, report);

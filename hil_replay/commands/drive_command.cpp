@@ -107,7 +107,7 @@ int make_options(const DriveArguments& arguments, const LoadedMachine& loaded,
 DriveResult run_observed(const DriveArguments& arguments, const Machine& machine, GuardChain& chain,
                          const AxisPositions& start, CommandedMotion motion, double whole_s,
                          const DriveOptions& options, DriveCsv& csv, PageRecorder* page,
-                         PathJudge& judge) {
+                         PathJudge& judge, ProgramLines& lines) {
     Progress progress;
     DriveObservers observers;
     std::int64_t noted_us = INT64_MIN;
@@ -123,6 +123,7 @@ DriveResult run_observed(const DriveArguments& arguments, const Machine& machine
         if (!arguments.csv.empty()) {
             csv.add(board, guard);
         }
+        add_program_step(lines, board.next_latch_us() - machine.can.sample_us, board.line());
         const AxisSnapshot& snapshot = chain.snapshot();
         if (page != nullptr && snapshot.axis_count != 0 && snapshot.latched_us != noted_us) {
             noted_us = snapshot.latched_us;  // a lost sample leaves the snapshot as it was
@@ -282,10 +283,12 @@ int run_drive(const DriveArguments& arguments) {
                           : std::make_unique<PageRecorder>(loaded, engine.engine());
     const bool wants_length = arguments.obeys_cap || keeps_cap || isatty(STDERR_FILENO) == 1;
     const double whole_s = wants_length ? motion_seconds(program, limits, motion) : 0;
+    ProgramLines lines{.program = arguments.gcode.program};
     const DriveResult result =
         run_observed(arguments, machine, chain, gcode.start,
                      make_program_motion(program, limits, motion, share, &lost_s), whole_s, options,
-                     csv, page.get(), judge);
+                     csv, page.get(), judge, lines);
+    add_blocks(lines, reading.text);
     const bool is_finished = result.state == BoardState::finished;
     if (result.samples >= arguments.gcode.samples_max) {
         fmt::print(stderr, "{}: program: {}\n", arguments.gcode.program,
@@ -297,6 +300,7 @@ int run_drive(const DriveArguments& arguments) {
     DriveReport report{machine,        engine.engine(), result,  arguments.gcode.program,
                        arguments.mode, arguments.seed,  has_cap, free_s};
     report.contact = judge.contact();
+    report.lines = std::move(lines);
     if (!is_finished) {
         look_for_ways_out(arguments, loaded, containment_test, options, report);
     }

@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "config/machine/effective_text.hpp"
 #include "config/text/quote_text.hpp"
@@ -26,6 +27,7 @@
 #include "hil_replay/commands/commands.hpp"
 #include "hil_replay/page/pair_clearances.hpp"
 #include "hil_replay/page/run_page.hpp"
+#include "hil_replay/place/program_finder.hpp"
 #include "hil_replay/replay/replay_csv.hpp"
 #include "hil_replay/replay/replay_report.hpp"
 #include "hil_replay/replay/replay_run.hpp"
@@ -39,6 +41,7 @@ namespace {
 
 struct ReplayArguments {
     MachineOptions machine;
+    GcodeArguments gcode;  // program: empty unless --program
     std::string trace, engine, mode = "stoppable", csv, frames_out, report, device, lines;
     std::int64_t deadline_us = 0;  // 0: the machine file's
     std::uint32_t multiprocessors = 0;
@@ -59,11 +62,13 @@ int exit_code_of_unopened(const std::string& path) {
     return access(path.c_str(), R_OK) == 0 ? kExitCan : kExitInput;
 }
 
+/// What is made of each cycle besides the verdict.
 struct Outputs {
     std::unique_ptr<ReplayCsv> csv;
     std::optional<PairClearances> clearances;  // for the table
     std::unique_ptr<CandumpWriter> frames;
     std::unique_ptr<PageRecorder> page;
+    std::optional<ProgramFinder> program;
 };
 
 Outputs open_outputs(const ReplayArguments& arguments, const LoadedMachine& loaded, Engine engine) {
@@ -80,6 +85,9 @@ Outputs open_outputs(const ReplayArguments& arguments, const LoadedMachine& load
     if (!arguments.report.empty()) {
         outputs.page = std::make_unique<PageRecorder>(loaded, engine);
     }
+    if (!arguments.gcode.program.empty()) {
+        outputs.program.emplace(arguments.gcode, machine);
+    }
     return outputs;
 }
 
@@ -90,6 +98,9 @@ void note_cycle(Outputs& outputs, const ReplayCycle& cycle) {
     if (outputs.page) {
         outputs.page->note(cycle.snapshot,
                            {cycle.sent_permit, cycle.spent_ns, cycle.clearance_level()});
+    }
+    if (outputs.program) {
+        outputs.program->add(cycle.snapshot);
     }
 }
 
@@ -182,10 +193,18 @@ int replay_dump(const ReplayArguments& arguments, LoadedMachine& loaded) {
                    escaped(arguments.trace, 4096));
         return kExitUsage;
     }
+    std::optional<ProgramFinder> program;
+    if (!arguments.gcode.program.empty()) {
+        program.emplace(arguments.gcode, loaded.machine);
+        if (!program->open()) {
+            return kExitInput;
+        }
+    }
     return replay_black_box({.file = arguments.trace,
                              .engine = arguments.engine,
                              .frames_out = arguments.frames_out,
                              .any_machine = arguments.lenient,
+                             .program = program ? &*program : nullptr,
                              .json = arguments.json},
                             loaded);
 }
@@ -208,6 +227,18 @@ ReplayOptions run_options_of(const ReplayArguments& arguments, const LoadedMachi
         options.sent = [&outputs](const CanFrame& frame) { outputs.frames->write(frame); };
     }
     return options;
+}
+
+/// Matched with the program where one was passed, else from the table beside the trace.
+ProgramLines lines_of(const ReplayArguments& arguments, Outputs& outputs) {
+    ProgramLines lines;
+    if (outputs.program) {
+        lines = outputs.program->finish();
+    } else if (const std::string note = load_program_lines(arguments.trace, arguments.lines, lines);
+               !note.empty()) {
+        fmt::print(stderr, "{}\n", note);
+    }
+    return lines;
 }
 
 int replay(const ReplayArguments& arguments) {
@@ -239,6 +270,9 @@ int replay(const ReplayArguments& arguments) {
     }
     CpuEngine& engine = *parts.engine;
     Outputs outputs = open_outputs(arguments, loaded, engine.engine());
+    if (outputs.program && !outputs.program->open()) {
+        return kExitInput;
+    }
     const ReplayOptions run_options = run_options_of(arguments, loaded, parts.cycle, outputs);
     const auto observe = [&outputs](const ReplayCycle& cycle) { note_cycle(outputs, cycle); };
     CycleDemand demand = cycle_demand(loaded.machine, is_stoppable);
@@ -254,11 +288,7 @@ int replay(const ReplayArguments& arguments) {
     if (!end.fault.empty()) {
         fmt::print(stderr, "{}\n", end.fault);
     }
-    ProgramLines lines;
-    if (const std::string note = load_program_lines(arguments.trace, arguments.lines, lines);
-        !note.empty()) {
-        fmt::print(stderr, "{}\n", note);
-    }
+    ProgramLines lines = lines_of(arguments, outputs);
     const bool gpu_failed = report_if_gave_up(chosen);
     ReplayReport report{loaded,
                         engine,
@@ -332,10 +362,24 @@ void add_replay(CommandLine& line) {
                        "write one HTML report: the machine in motion, clearances, stops");
     command.add_input("--lines", arguments->lines,
                       "program lines of the trace [default: TRACE.lines, written by simulate]");
+    const Option program = command.add_input(
+        "--program", arguments->gcode.program,
+        "G-code program that the trace ran: finds the line of each stop by matching the path");
+    const std::vector<Option> settings = add_gcode_settings(command, arguments->gcode);
     command.add_option("--device", arguments->device, "read only the frames of this interface");
     command.add_flag("--lenient", arguments->lenient, "skip and count invalid lines");
     add_json_option(command, arguments->json);
-    command.set_action([arguments, files = command.files()] {
+    command.set_action([arguments, files = command.files(), program, settings] {
+        const bool has_setting = std::any_of(settings.begin(), settings.end(),
+                                             [](const Option& one) { return one.is_given(); });
+        if (program.is_given() ? !arguments->lines.empty() : has_setting) {
+            fmt::print(stderr, "axguard: {}\n",
+                       program.is_given()
+                           ? "--program replaces --lines. Leave one of them out."
+                           : "--start, --work-offset, --tool, --ignore, --block-delete, --rotary "
+                             "and --part are about a program. Pass it with --program.");
+            return static_cast<int>(kExitUsage);
+        }
         const std::string lines = program_lines_name(arguments->trace);  // read without an option
         return are_apart(*files, {lines}, stderr) ? replay(*arguments)
                                                   : static_cast<int>(kExitUsage);

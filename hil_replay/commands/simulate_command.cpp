@@ -6,8 +6,6 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -82,15 +80,15 @@ SimulationSummary simulate_with_progress(const Machine& machine, const Program& 
 }
 
 /// Beside a trace that is a file of its own. False: it was not written, and the reason is printed.
-bool write_program_lines(const SimulateArguments& arguments, ProgramLines& lines) {
+bool write_program_lines(const SimulateArguments& arguments, const std::string& program_text,
+                         ProgramLines& lines) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(arguments.output, error)) {
         return true;
     }
     set_trace(lines, arguments.output);
     lines.program = arguments.gcode.program;
-    std::ifstream program(lines.program, std::ios::binary);
-    add_blocks(lines, std::string{std::istreambuf_iterator<char>(program), {}});
+    add_blocks(lines, program_text);
     return write_whole_file(program_lines_name(arguments.output), program_lines_text(lines),
                             stderr);
 }
@@ -154,7 +152,7 @@ int run_simulate(const SimulateArguments& arguments) {
                      is_about_program ? ":" : "", summary.error.c_str());
         return summary.exit_code;
     }
-    if (!write_program_lines(arguments, summary.lines)) {
+    if (!write_program_lines(arguments, reading.text, summary.lines)) {
         return kExitInternal;
     }
     print_summary(arguments.json.words(), arguments, machine, summary);

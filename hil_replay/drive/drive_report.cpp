@@ -160,6 +160,11 @@ std::vector<PairAtRest> pairs_at_rest(const DriveReport& report) {
     return pairs;
 }
 
+std::int64_t stopped_at_us(const DriveResult& result) noexcept {
+    return has_reason(result.guard_stop) ? result.guard_stop.snapshot.latched_us
+                                         : result.board_stop.asked_us;
+}
+
 void print_drive(const DriveReport& report, std::FILE* words) {
     const DriveResult& result = report.result;
     const Machine& machine = report.machine;
@@ -178,7 +183,8 @@ void print_drive(const DriveReport& report, std::FILE* words) {
             "HELD: the cap keeps the axes where they stand, since not even a crawl is proven "
             "ahead\n");
     } else {
-        fmt::print(words, "STOP: {}\n", why_text(report));
+        fmt::print(words, "STOP: {}\n{}", why_text(report),
+                   format_step_at(report.lines, stopped_at_us(result)));
         print_guard_stop(report, words);
     }
     if (report.bus) {

@@ -15,6 +15,7 @@
 #include "hil_replay/drive/jog_out.hpp"
 #include "hil_replay/drive/path_judge.hpp"
 #include "hil_replay/replay/why_stop.hpp"
+#include "hil_replay/trace/program_lines.hpp"
 
 namespace axg {
 
@@ -38,7 +39,11 @@ struct DriveReport {
     std::optional<JogOut> jogs{};          // that followed
     std::optional<BusReport> bus{};        // the guard was another program; `mode` is not known
     std::optional<StopWhy> why{};          // of the guard's stop, or of the permit that never came
+    ProgramLines lines{};                  // by the board's clock
 };
+/// When the program was left: at the sample that the guard stopped for, or when the board was
+/// asked.
+[[nodiscard]] std::int64_t stopped_at_us(const DriveResult& result) noexcept;
 
 void print_drive(const DriveReport& report, std::FILE* words);
 [[nodiscard]] std::string describe_drive(const DriveReport& report);

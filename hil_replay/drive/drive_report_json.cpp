@@ -129,6 +129,9 @@ std::string describe_drive(const DriveReport& report) {
                              {"brake_us", stop.brake_us},
                              {"rest_us", stop.rest_us}};
     }
+    if (result.state != BoardState::finished) {
+        add_program_line(report.lines, stopped_at_us(result), out);
+    }
     if (has_reason(result.guard_stop)) {
         out["guard_stop"] = guard_stop_json(report);
     }
@@ -159,6 +162,7 @@ std::string describe_stops(const DriveReport& report) {
     const DriveStop& stop = report.result.guard_stop;
     if (has_reason(stop)) {
         stops.push_back({{"time_us", stop.snapshot.arrived_us}, {"reason", reason_text(stop)}});
+        add_program_line(report.lines, stop.snapshot.latched_us, stops.back());
         if (report.why) {
             stops.back()["why"] = why_json(report.machine, *report.why);
         }

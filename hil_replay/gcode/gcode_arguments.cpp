@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "config/text/fault_text.hpp"
 #include "config/text/small_file.hpp"
@@ -48,32 +49,6 @@ bool read_work_offset(const std::string& text, const Machine& machine, GcodeOpti
         std::fprintf(stderr, "--work-offset: \"%s\": %s\n", text.c_str(), fault.c_str());
     }
     return fault.empty();
-}
-
-/// What was wrong, left out or odd: one line each, on stderr.
-void print_messages(const std::string& file, const GcodeResult& result) {
-    for (const IgnoredWord& word : result.ignored) {
-        std::fprintf(stderr, "%s:%u: %s: ignored (--ignore): %s\n", file.c_str(), word.line,
-                     word.word.c_str(), word.text.c_str());
-    }
-    if (!result.ignored.empty()) {
-        std::fprintf(stderr,
-                     "%s: %zu words ignored; the simulated motion may differ from the program's. "
-                     "Without tool centre point control, axis words are joint positions.\n",
-                     file.c_str(), result.ignored.size());
-    }
-    for (const std::string& note : result.notes) {
-        std::fprintf(stderr, "%s:%s\n", file.c_str(), note.c_str());
-    }
-    for (const ProgramFault& fault : result.faults) {
-        std::fprintf(stderr, "%s:%u: %s: %s\n", file.c_str(), fault.line, fault.word.c_str(),
-                     fault.message.c_str());
-    }
-    if (result.has_more_faults) {
-        std::fprintf(stderr,
-                     "%s: reading stopped after %zu faults. Show more with --max-errors N.\n",
-                     file.c_str(), result.faults.size());
-    }
 }
 
 /// A fault where the motion certainly has more samples than it may have.
@@ -137,58 +112,95 @@ bool is_start_inside(const Machine& machine, const AxisPositions& start) {
     return outside.empty();
 }
 
-bool read_program(const GcodeArguments& arguments, const Machine& machine,
-                  const GcodeOptions& options, GcodeResult& result) {
-    const std::string& path = arguments.program;
-    std::string text;
+void print_messages(const std::string& file, const GcodeResult& result) {
+    for (const IgnoredWord& word : result.ignored) {
+        std::fprintf(stderr, "%s:%u: %s: ignored (--ignore): %s\n", file.c_str(), word.line,
+                     word.word.c_str(), word.text.c_str());
+    }
+    if (!result.ignored.empty()) {
+        std::fprintf(stderr,
+                     "%s: %zu words ignored; the simulated motion may differ from the program's. "
+                     "Without tool centre point control, axis words are joint positions.\n",
+                     file.c_str(), result.ignored.size());
+    }
+    for (const std::string& note : result.notes) {
+        std::fprintf(stderr, "%s:%s\n", file.c_str(), note.c_str());
+    }
+    for (const ProgramFault& fault : result.faults) {
+        std::fprintf(stderr, "%s:%u: %s: %s\n", file.c_str(), fault.line, fault.word.c_str(),
+                     fault.message.c_str());
+    }
+    if (result.has_more_faults) {
+        std::fprintf(stderr,
+                     "%s: reading stopped after %zu faults. Show more with --max-errors N.\n",
+                     file.c_str(), result.faults.size());
+    }
+}
+
+bool read_program_text(const std::string& path, std::string& text) {
     const SmallFileFault fault = read_small_file(path, kProgramBytesMax, text);
     if (!fault.got.empty() || !fault.wanted.empty()) {
         std::fprintf(stderr, "%s: %s\n", path.c_str(),
                      fault_text("invalid file", fault.got, fault.wanted).c_str());
         return false;
     }
+    return true;
+}
+
+bool read_program(const GcodeArguments& arguments, const Machine& machine,
+                  const GcodeOptions& options, GcodeResult& result) {
+    std::string text;
+    if (!read_program_text(arguments.program, text)) {
+        return false;
+    }
     result = read_gcode(text, machine, options);
     if (result.faults.empty()) {
         check_length(machine, options, result);
     }
-    print_messages(path, result);
+    print_messages(arguments.program, result);
+    result.text = std::move(text);
     return true;
+}
+
+std::vector<Option> add_gcode_settings(const Command& command, GcodeArguments& arguments) {
+    return {
+        command.add_option(
+            "--start", arguments.start,
+            "axis positions before the program, such as \"X0 Z50 C90\" [default: a trace's first "
+            "sample; else 0, or the nearest end of travel]"),
+        command
+            .add_option("--work-offset", arguments.work_offsets,
+                        "offset of a work coordinate system, such as \"G54 X10 Z-50\"; repeatable")
+            .repeatable(),
+        command
+            .add_option("--tool", arguments.tools,
+                        "PROGRAM=MACHINE: map a tool number of the program to one of the machine "
+                        "file, such as 150=1; repeatable")
+            .repeatable(),
+        command
+            .add_option("--ignore", arguments.ignored,
+                        "words to ignore, such as M428,M429; each occurrence is reported")
+            .separated_by(','),
+        command
+            .add_option("--block-delete", arguments.block_delete,
+                        "lines that begin with '/': refuse, skip or run")
+            .one_of({"refuse", "skip", "run"})
+            .shows_default(),
+        command
+            .add_option("--rotary", arguments.rotary,
+                        "absolute words of endless axes: programmed = full turns, short = at most "
+                        "half a turn")
+            .one_of({"programmed", "short"})
+            .shows_default(),
+        command.add_option("--part", arguments.part,
+                           "body that carries the part, for tool centre point control [default: "
+                           "the body that most axes move]")};
 }
 
 void add_gcode_options(const Command& command, GcodeArguments& arguments) {
     command.add_input("PROGRAM", arguments.program, "G-code program in LinuxCNC's dialect")
         .required();
-    command.add_option(
-        "--start", arguments.start,
-        "axis positions before the program, such as \"X0 Z50 C90\", in machine coordinates, mm and "
-        "degrees [default: 0, or the nearest end of the travel]");
-    command
-        .add_option("--work-offset", arguments.work_offsets,
-                    "offset of a work coordinate system, such as \"G54 X10 Z-50\"; repeatable")
-        .repeatable();
-    command
-        .add_option("--tool", arguments.tools,
-                    "PROGRAM=MACHINE: map a tool number of the program to one of the machine file, "
-                    "such as 150=1; repeatable")
-        .repeatable();
-    command
-        .add_option("--ignore", arguments.ignored,
-                    "words to ignore, such as M428,M429; each occurrence is reported")
-        .separated_by(',');
-    command
-        .add_option("--block-delete", arguments.block_delete,
-                    "lines that begin with '/': refuse, skip or run")
-        .one_of({"refuse", "skip", "run"})
-        .shows_default();
-    command
-        .add_option(
-            "--rotary", arguments.rotary,
-            "absolute words of endless axes: programmed = full turns, short = at most half a turn")
-        .one_of({"programmed", "short"})
-        .shows_default();
-    command.add_option("--part", arguments.part,
-                       "body that carries the part, for tool centre point control [default: the "
-                       "body that most axes move]");
+    add_gcode_settings(command, arguments);
     command
         .add_option("--max-errors", arguments.faults_max,
                     "number of faults after which reading stops")

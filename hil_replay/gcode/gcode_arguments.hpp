@@ -13,6 +13,7 @@
 namespace axg {
 
 class Command;
+class Option;
 
 struct GcodeArguments {
     std::string program, start, part, block_delete = "refuse", rotary = "programmed";
@@ -22,6 +23,8 @@ struct GcodeArguments {
 };
 
 void add_gcode_options(const Command& command, GcodeArguments& arguments);
+/// Of these only what the control would know, without the program and without bounds.
+std::vector<Option> add_gcode_settings(const Command& command, GcodeArguments& arguments);
 
 /// Everything of it that means something only with a machine at hand. False: used wrongly, and
 /// stderr has the form.
@@ -31,6 +34,10 @@ void add_gcode_options(const Command& command, GcodeArguments& arguments);
 /// Whether every axis starts within its travel; else stderr names the axis.
 [[nodiscard]] bool is_start_inside(const Machine& machine, const AxisPositions& start);
 
+/// The program file's content; a fault stands on stderr. False: no such file, or too large.
+[[nodiscard]] bool read_program_text(const std::string& path, std::string& text);
+/// What was wrong, left out or odd: a line each, on stderr.
+void print_messages(const std::string& file, const GcodeResult& result);
 /// Reads the program file; what was wrong, left out or odd stands on stderr, a line each. False: no
 /// such file. Faults of the program are in `result`.
 [[nodiscard]] bool read_program(const GcodeArguments& arguments, const Machine& machine,

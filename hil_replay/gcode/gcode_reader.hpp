@@ -46,7 +46,8 @@ struct IgnoredWord {
 };
 
 struct GcodeResult {
-    Program program;  // usable only without faults
+    std::string text;  // of the program, where a file was read
+    Program program;   // usable only without faults
     std::vector<ProgramFault> faults;
     bool has_more_faults = false;
     std::vector<IgnoredWord> ignored;

@@ -424,6 +424,12 @@ void build_run(const Program& program, std::uint32_t first, const MotionLimits& 
     }
 }
 
+std::uint32_t line_at(const Program& program, const Piece& piece, double along_mm) {
+    const bool is_next = piece.kind == PieceKind::blend &&
+                         2 * along_mm > static_cast<double>(piece.length) * kMmPerPathUnit;
+    return program.moves[piece.move + (is_next ? 1 : 0)].line;
+}
+
 void PieceCurve::enter(const Program& program, const Piece& piece, const MotionLimits& limits) {
     kind_ = piece.kind;
     axis_count_ = limits.axis_count;

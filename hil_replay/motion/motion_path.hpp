@@ -48,6 +48,9 @@ struct Run {
 void build_run(const Program& program, std::uint32_t first, const MotionLimits& limits,
                const MotionOptions& options, Run& run);
 
+/// The program's line of a point of a piece; the second half of a blend is the next move's.
+[[nodiscard]] std::uint32_t line_at(const Program& program, const Piece& piece, double along_mm);
+
 /// Where the axes are at the end of a move.
 [[nodiscard]] AxisPositions axes_after(const Program& program, const Move& move);
 

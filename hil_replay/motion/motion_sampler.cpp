@@ -119,7 +119,7 @@ void MotionSampler::step_run(MotionSample& out) {
     const double along_mm = static_cast<double>(window_sum_ - steps * piece.start) *
                             (kMmPerPathUnit / limits_.smooth_steps);
     curve_.position(along_mm, out.position);
-    out.line = program_.moves[piece.move].line;
+    out.line = line_at(program_, piece, along_mm);
 }
 
 }  // namespace axg

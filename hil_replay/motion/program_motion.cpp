@@ -71,7 +71,7 @@ CommandedMotion make_program_motion(const Program& program, const MotionLimits& 
                 follow(f, i, axes[i]);
             }
         }
-        return MotionTick{.is_over = is_over, .tool = f.now.tool};
+        return MotionTick{.is_over = is_over, .tool = f.now.tool, .line = f.now.line};
     };
 }
 

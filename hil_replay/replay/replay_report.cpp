@@ -59,11 +59,8 @@ void print_stop(const ReplayReport& report, const StopEvent& stop, const char* t
     if (stop.reason == StopReason::left_limits) {
         fmt::print(words, "\n  {}", limit_text(stop.limit, machine));
     }
-    if (const ProgramStep* step = step_at(report.lines, stop.snapshot.arrived_us)) {
-        fmt::print(words, "\n  {}:{}: {}", escaped(report.lines.program, 4096), step->line,
-                   escaped(step->block));
-    }
-    fmt::print(words, "\n  {}\n", axes_text(machine, stop.snapshot));
+    fmt::print(words, "\n{}  {}\n", format_step_at(report.lines, stop.snapshot.arrived_us),
+               axes_text(machine, stop.snapshot));
     const auto why = report.whys.find(&stop);
     if (!is_about_distance(stop.reason)) {
         if (why != report.whys.end()) {

@@ -38,10 +38,7 @@ Json stop_json(const ReplayReport& report, const StopEvent& stop) {
              {"samples", stop.samples},
              {"reason", reason_text(stop)}};
     add_stop_cause(machine, stop.reason, stop.pair, stop.fault, stop.limit, out);
-    if (const ProgramStep* step = step_at(report.lines, stop.snapshot.arrived_us)) {
-        out["program_line"] = step->line;
-        out["program_block"] = step->block;
-    }
+    add_program_line(report.lines, stop.snapshot.arrived_us, out);
     out["axes"] = axes_json(machine, stop.snapshot);
     if (is_about_distance(stop.reason)) {
         auto& pairs = out["pairs"] = Json::array();

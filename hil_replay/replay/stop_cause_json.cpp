@@ -88,6 +88,13 @@ void add_stop_cause(const Machine& machine, StopReason reason, std::uint32_t pai
     }
 }
 
+void add_program_line(const ProgramLines& lines, std::int64_t time_us, Json& out) {
+    if (const ProgramStep* step = step_at(lines, time_us)) {
+        out["program_line"] = step->line;
+        out["program_block"] = step->block;
+    }
+}
+
 Json why_json(const Machine& machine, const StopWhy& why) {
     const DistanceNeed& need = why.need;
     Json out{{"cause", to_text(why.cause)}, {"pair", pair_name(machine, why.pair)}};
@@ -103,6 +110,9 @@ Json why_json(const Machine& machine, const StopWhy& why) {
                     {"margin_mm", need.margin_mm},
                     {"arithmetic_mm", need.arithmetic_mm},
                     {"list_full", why.is_list_full}});
+    if (const char* const list = full_list(why.full)) {
+        out["full_list"] = list;
+    }
     if (why.has_reach) {
         out["worst_mm"] = why.worst_mm;
         out["queries"] = why.queries;

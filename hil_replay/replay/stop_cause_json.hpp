@@ -10,6 +10,7 @@
 #include "core/machine/machine.hpp"
 #include "firmware_if/receiver/receiver_faults.hpp"
 #include "hil_replay/replay/why_stop.hpp"
+#include "hil_replay/trace/program_lines.hpp"
 
 namespace axg {
 
@@ -19,6 +20,9 @@ namespace axg {
 /// @param limit  of reason left_limits
 void add_stop_cause(const Machine& machine, StopReason reason, std::uint32_t pair,
                     ReceiverFault fault, const LimitFact& limit, nlohmann::ordered_json& out);
+
+/// Adds `program_line` and `program_block`, where a table has a step at this instant.
+void add_program_line(const ProgramLines& lines, std::int64_t time_us, nlohmann::ordered_json& out);
 
 /// Keys: docs/reference/json.md.
 [[nodiscard]] nlohmann::ordered_json why_json(const Machine& machine, const StopWhy& why);

@@ -172,6 +172,7 @@ std::optional<StopWhy> why_of(const WhySources& sources, const StopFacts& stop) 
     }
     why.need = distance_need(machine, pair);
     why.is_list_full = is_overflow(pair.result.status);
+    why.full = pair.result.status;
     why.queries = pair.result.queries;
     why.within_mm = std::clamp(why.need.sum_mm(), kWithinMm, kMarginMmMax);
     why.available_mm = available_mm(machine, engine, pair, why.within_mm);

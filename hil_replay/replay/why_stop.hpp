@@ -37,10 +37,11 @@ struct StopWhy {
     bool is_whole = false;  // need.until_braking_mm is the whole reach
     bool is_jog = false;    // need.margin_mm is the floor of the jog
     bool is_list_full = false;
-    std::uint32_t queries = 0;  // of the proof that failed
-    double available_mm = 0;    // certified at the sampled position
-    double within_mm = 0;       // clearances were measured up to this
-    double worst_mm = 0;        // least clearance found in the reach
+    QueryStatus full = QueryStatus::ok;  // an overflow: which list; ok: not known, or none
+    std::uint32_t queries = 0;           // of the proof that failed
+    double available_mm = 0;             // certified at the sampled position
+    double within_mm = 0;                // clearances were measured up to this
+    double worst_mm = 0;                 // least clearance found in the reach
     std::optional<OpenPart> open;
     NeedRemedies remedies;
     std::string other_limits;  // those that `are_other_limits` is about
@@ -48,6 +49,9 @@ struct StopWhy {
     JointBox reach;                 // every position of the axes that was to be proven
     std::vector<ReachBody> bodies;  // the pair's, in it
 };
+
+/// The list's key in cycle.lists and capacities of the machine file; null: `status` is no overflow.
+[[nodiscard]] const char* full_list(QueryStatus status) noexcept;
 
 /// A stop, or a permit withheld, as its cycle left it.
 struct StopFacts {

@@ -94,6 +94,23 @@ const char* to_text(WhyCause cause) noexcept {
     return "not_proven";
 }
 
+const char* full_list(QueryStatus status) noexcept {
+    switch (status) {
+        case QueryStatus::too_many_node_pairs:
+            return "node_pairs";
+        case QueryStatus::too_many_leaf_pairs:
+            return "leaf_pairs";
+        case QueryStatus::too_many_box_rows:
+            return "box_rows";
+        case QueryStatus::too_many_triangle_pairs:
+            return "triangle_pairs";
+        case QueryStatus::too_many_rechecks:
+            return "rechecks";
+        default:
+            return nullptr;
+    }
+}
+
 std::string format_why(const Machine& machine, const StopWhy& why) {
     std::string text = fmt::format("  why ({}): {} ", to_text(why.cause), name_of(machine, why));
     if (why.cause == WhyCause::contained) {
@@ -115,7 +132,9 @@ std::string format_why(const Machine& machine, const StopWhy& why) {
             why.queries, why.open->needed_mm, why.open->available_mm);
     }
     if (why.is_list_full) {
-        text += "    a list of the engine was full (cycle: in the machine file)\n";
+        const char* const list = full_list(why.full);
+        text += fmt::format("    a list of the engine was full{} (cycle: in the machine file)\n",
+                            list == nullptr ? "" : fmt::format(": {}", list));
     }
     const std::string remedies = remedies_text(why);
     return text + (remedies.empty()

@@ -12,6 +12,7 @@
 #include <system_error>
 
 #include "config/text/fault_text.hpp"
+#include "config/text/quote_text.hpp"
 #include "config/text/small_file.hpp"
 #include "core/base/crc32.hpp"
 
@@ -20,6 +21,7 @@ namespace {
 
 constexpr std::string_view kTitle = "axguard program lines 2";
 constexpr std::size_t kBlockBytesMax = 200;
+constexpr std::size_t kProgramNameMax = 4096;
 constexpr std::size_t kFileBytesMax = 256U << 20U;
 
 std::uint32_t crc_of(std::string_view text) {
@@ -215,6 +217,13 @@ const ProgramStep* step_at(const ProgramLines& lines, std::int64_t time_us) noex
         return nullptr;
     }
     return &*std::prev(next);
+}
+
+std::string format_step_at(const ProgramLines& lines, std::int64_t time_us) {
+    const ProgramStep* const step = step_at(lines, time_us);
+    return step == nullptr ? std::string{}
+                           : fmt::format("  {}:{}: {}\n", escaped(lines.program, kProgramNameMax),
+                                         step->line, escaped(step->block));
 }
 
 }  // namespace axg

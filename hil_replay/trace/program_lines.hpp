@@ -19,11 +19,11 @@ struct ProgramStep {
 };
 
 struct ProgramLines {
-    std::string program;             // its file, as it was named
-    std::uint32_t program_crc = 0;   // of its content
-    std::uint64_t trace_bytes = 0;   // of the trace that the table belongs to
-    std::uint32_t trace_crc = 0;     // crc32 of it
-    std::vector<ProgramStep> steps;  // in order of time
+    std::string program{};             // its file, as it was named
+    std::uint32_t program_crc = 0;     // of its content
+    std::uint64_t trace_bytes = 0;     // of the trace that the table belongs to
+    std::uint32_t trace_crc = 0;       // crc32 of it
+    std::vector<ProgramStep> steps{};  // in order of time
 
     [[nodiscard]] bool is_empty() const noexcept { return steps.empty(); }
 };
@@ -50,5 +50,7 @@ void add_blocks(ProgramLines& lines, std::string_view program_text);
 
 /// The step at an instant; null: before the first one, or of line 0.
 [[nodiscard]] const ProgramStep* step_at(const ProgramLines& lines, std::int64_t time_us) noexcept;
+/// "  FILE:LINE: BLOCK" and the end of the line, for a terminal; empty: no step.
+[[nodiscard]] std::string format_step_at(const ProgramLines& lines, std::int64_t time_us);
 
 }  // namespace axg

@@ -58,7 +58,15 @@ TEST_F(DriveCommand, TheDemoIsStoppedAndSaysWhereAndHowFarFromContact) {
         std::any_of(result["escapes"].begin(), result["escapes"].end(),
                     [](const json& way) { return way["axis"] == "Z" && way["direction"] == "+"; }))
         << "the cutter goes up";
+    // The block whose target lies beyond the stop.
+    EXPECT_EQ(result["program_block"].get<std::string>().rfind("G1 X0.0000 Y105.7850 ", 0), 0U)
+        << result["program_block"];
+    EXPECT_LT(result["rest"]["Y_mm"].get<double>(), 105.785);
     ASSERT_EQ(drive(kDemoProgram, ""), 10);
+    EXPECT_NE(shop.out.find("paper-trunnion-demo.ngc:" +
+                            std::to_string(result["program_line"].get<int>()) + ": G1 X0.0000 "),
+              std::string::npos)
+        << shop.out;
     EXPECT_NE(shop.out.find(" Z+ (1 mm: clearance at least "), std::string::npos) << shop.out;
     EXPECT_NE(shop.out.find("STOP: the guard ordered a stop"), std::string::npos) << shop.out;
     EXPECT_NE(shop.out.find("at rest: X "), std::string::npos);

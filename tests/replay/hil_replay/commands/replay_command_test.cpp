@@ -22,6 +22,8 @@
 namespace axg {
 namespace {
 
+using namespace std::string_literals;
+
 constexpr const char* kStart = "T1 M6\nG0 X20 Y5 Z40\n";
 
 class ReplayCommand : public testing::Test {
@@ -91,6 +93,31 @@ TEST_F(ReplayCommand, WithoutProgramLinesAStopLosesNothingElse) {
     EXPECT_EQ(shop->out.substr(shop->out.find("STOP at")), bare);
     EXPECT_EQ(replay("bare.log --lines demo.log.lines"), kExitCollision);
     EXPECT_EQ(shop->out.substr(shop->out.find("STOP at")), with);
+}
+
+// As a recorded trace comes: without a table of lines, but the program is known.
+TEST_F(ReplayCommand, ARecordedTraceIsMatchedWithItsProgram) {
+    EXPECT_EQ(replay("demo.log"), kExitCollision);
+    const std::string with = shop->out.substr(shop->out.find("STOP at"));
+    std::filesystem::copy_file(shop->file("demo.log"), shop->file("recorded.log"));
+    EXPECT_EQ(replay("recorded.log --program " + test::kDemoProgram), kExitCollision);
+    EXPECT_EQ(shop->out.substr(shop->out.find("STOP at")), with);
+    EXPECT_NE(shop->err.find(" of 40074 samples are on its path"), std::string::npos) << shop->err;
+
+    // Another program, or another zero point, names no line of the stop and says so.
+    for (const std::string& wrong : {"--program brief.ngc"s, "--program " + test::kDemoProgram +
+                                                                 " --work-offset 'G54 X30 Y30'"}) {
+        EXPECT_EQ(replay("recorded.log " + wrong), kExitCollision);
+        EXPECT_EQ(shop->out.find(".ngc:"), std::string::npos) << shop->out;
+        EXPECT_NE(shop->err.find(" samples are on its path. Check --work-offset"),
+                  std::string::npos)
+            << shop->err;
+    }
+    EXPECT_EQ(replay("recorded.log --program none.ngc"), kExitInput) << shop->err;
+    EXPECT_EQ(replay("recorded.log --work-offset 'G54 X30'"), kExitUsage);
+    EXPECT_NE(shop->err.find("Pass it with --program."), std::string::npos) << shop->err;
+    EXPECT_EQ(replay("recorded.log --lines demo.log.lines --program " + test::kDemoProgram),
+              kExitUsage);
 }
 
 TEST_F(ReplayCommand, ACollisionIsExit10WithPairTrianglesTimeAndAxes) {

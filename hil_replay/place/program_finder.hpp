@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// The lines of a program that a recorded trace ran, found by matching its positions with the
+// program's path: for a trace without a table of them. docs/guide/report.md.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "core/machine/machine.hpp"
+#include "firmware_if/receiver/axis_receiver.hpp"
+#include "hil_replay/gcode/gcode_arguments.hpp"
+#include "hil_replay/place/path_match.hpp"
+#include "hil_replay/trace/program_lines.hpp"
+
+namespace axg {
+
+class ProgramFinder {
+  public:
+    /// Both must outlive it.
+    ProgramFinder(const GcodeArguments& arguments, const Machine& machine)
+        : arguments_(arguments), machine_(machine) {}
+
+    /// What can be said before the first sample: the options and the program's file. False: stderr
+    /// has the fault.
+    [[nodiscard]] bool open();
+    /// In order of time. The first one is where the program starts, unless --start says otherwise.
+    void add(const AxisSnapshot& snapshot);
+    /// After the last sample: without steps where nothing matched, or the program was rejected.
+    /// stderr has how much matched.
+    [[nodiscard]] ProgramLines finish();
+
+  private:
+    void read(const AxisSnapshot& first);
+
+    const GcodeArguments& arguments_;
+    const Machine& machine_;
+    GcodeOptions options_;
+    std::string text_;
+    bool is_read_ = false;
+    std::optional<PathMatch> match_;
+};
+
+}  // namespace axg
