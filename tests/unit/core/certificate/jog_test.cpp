@@ -12,6 +12,7 @@
 #include "core/base/sincos.hpp"
 #include "core/certificate/stop_certificate.hpp"
 #include "core/certificate/stop_reach.hpp"
+#include "core/guard/distance_need.hpp"
 #include "core/guard/monitor.hpp"
 #include "core/machine/cycle_plan.hpp"
 #include "tests/support/containment_fixture.hpp"
@@ -309,6 +310,21 @@ TEST_F(JogCertificateTest, TheWrongWayIsWithheldWithoutAStop) {
     }
     EXPECT_TRUE(cycle(0.3, kUp).has_permit);
     EXPECT_TRUE(cycle(0.3, kDown).is_stop) << "in the middle of it, it is one";
+}
+
+// What a report says of it: the pair has to keep what it has, not its margin of 0.5 mm.
+TEST_F(JogCertificateTest, WhyItIsWithheldCountsFromTheClearanceToKeep) {
+    ASSERT_FALSE(cycle(0.3, kDown).has_permit);
+    const UnprovenPair pair = unproven_pair(m, *certificate, 0);
+    ASSERT_TRUE(pair.is_known);
+    EXPECT_TRUE(pair.is_jog && pair.is_whole);
+    const DistanceNeed need = distance_need(m, pair);
+    EXPECT_NEAR(need.margin_mm, 0.3 - kJogGiveMm, 0.01 + 0.5 / kJogRungs);
+    EXPECT_NEAR(available_mm(m, engine, pair, 50), 0.3, 1e-3);
+    EXPECT_GT(need.sum_mm(), 0.3);
+    EXPECT_LT(need.sum_mm(), 0.5);
+    EXPECT_EQ(need.braking_mm + need.position_error_mm + need.speed_uncertainty_mm, 0);
+    EXPECT_FALSE(find_remedies(m, engine, pair, {}).margin_mm) << "nobody can lower it";
 }
 
 TEST_F(JogCertificateTest, NearerThanItBeganItStops) {
