@@ -119,7 +119,7 @@ bool write_outputs(const ReplayArguments& arguments, const ReplayReport& report,
     if (outputs.page) {
         const RunPage page{report.loaded,      outputs.page->finish(), &report.run.cycles(),
                            report.deadline_us, arguments.trace,        words,
-                           document.stops};
+                           document.stops,     &report.lines};
         written = write_run_page(arguments.report, page, stderr) && written;
     }
     return written;

@@ -23,6 +23,10 @@ class RunPage {
     this.makeView();
     this.makeControls();
     this.drawMarks();
+    const {program} = data;
+    this.program = program && Object.keys(program.blocks).length > 0
+      ? new ProgramList(program, this.stops, [this.first, this.last], (time) => this.goTo(time))
+      : null;
     this.plots = new Plots(data, (time) => this.goTo(time));
     const opensAt = this.stops.find((stop) => !stop.isWithheld) || this.stops[0];
     const asked = /^#t=([-+.\de]+)$/.exec(window.location.hash);
@@ -149,14 +153,7 @@ class RunPage {
 
   /** The last row that is not after a time. */
   rowAt(time) {
-    const times = this.data.samples.time_s;
-    let low = 0, high = times.length - 1;
-    while (low < high) {
-      const middle = Math.ceil((low + high) / 2);
-      if (times[middle] <= time + 5e-7) low = middle;
-      else high = middle - 1;
-    }
-    return low;
+    return Math.max(0, lastNotAfter(this.data.samples.time_s, time));
   }
 
   goToRow(row) {
@@ -207,6 +204,7 @@ class RunPage {
     writeWhy(stop && stop.why);
     this.byId("slider").value = this.row;
     this.byId("clock").textContent = `${this.time.toFixed(3)} s`;
+    if (this.program) this.program.setTime(this.time);
     this.writeHere(positions, stop);
     if (this.plots) this.plots.setTime(this.time, this.row);
   }
@@ -222,7 +220,13 @@ class RunPage {
     const level = LEVELS[samples.level[this.row]];
     if (level !== "clear") lines.push(`level: ${level}`);
     if (stop) lines.push(`${stop.isWithheld ? "NO PERMIT" : "STOP"}: ${stop.reason}`);
-    this.byId("here").textContent = lines.join("\n");
+    const here = this.byId("here");
+    here.textContent = lines.join("\n");
+    if (this.program && this.program.line !== 0) {
+      const file = document.createElement("bdi");  // a name in its own direction of writing
+      file.textContent = this.program.name;
+      here.append("\n", file, `:${this.program.line}`);
+    }
   }
 
   togglePlay() {

@@ -19,8 +19,8 @@ constexpr std::array kLibraries = {
 constexpr const char* kLibraryStyle = "dygraphs/dygraph.min.css";
 constexpr const char* kInstall =
     "--report needs three.js and dygraphs. Install them (Debian: libjs-three, libjs-dygraphs).";
-constexpr std::array kScriptsOfPage = {"closest.js", "machine_view.js", "plots.js", "why.js",
-                                       "page.js"};
+constexpr std::array kScriptsOfPage = {"closest.js", "machine_view.js", "plots.js",
+                                       "why.js",     "program.js",      "page.js"};
 
 /// As it may stand within <script>.
 void append_script(std::string& page, const std::string& text) {

@@ -12,6 +12,7 @@
 #include "firmware_if/setup/loaded_machine.hpp"
 #include "hil_replay/page/clearance_tracker.hpp"
 #include "hil_replay/replay/page_samples.hpp"
+#include "hil_replay/trace/program_lines.hpp"
 
 namespace axg {
 
@@ -50,6 +51,7 @@ struct RunPage {
     std::string title, words;  // the command's own summary
     // [{"time_us", "reason", may be: "axes": {"X_mm": ..}, "pairs": [{"pair", "triangles"}]}]
     std::string stops;
+    const ProgramLines* program = nullptr;  // null or empty: no line is known
 };
 
 /// Writes the page whole or not at all. False: `messages` says why, and what to install.

@@ -12,6 +12,7 @@
 #include "core/base/sincos.hpp"
 #include "firmware_if/setup/surface_list.hpp"
 #include "hil_replay/page/page_parts.hpp"
+#include "hil_replay/page/page_program_json.hpp"
 #include "hil_replay/page/run_page.hpp"
 #include "hil_replay/replay/replay_csv.hpp"
 
@@ -183,6 +184,9 @@ std::string page_data(const RunPage& page) {
     append_surfaces(page.loaded, text);
     text += ",\"samples\":";
     append_samples(page.samples, text);
+    if (const std::string program = program_data(page); !program.empty()) {
+        text += ",\"program\":" + program;
+    }
     text += '}';
     return safe_in_script(text);
 }

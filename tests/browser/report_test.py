@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The page of `replay`, `drive` and `check --report` in headless Chromium: it loads from disk with
 no error, the slider and the keys move the machine, it plays, its stop is where table and results
-say, the line between the nearest triangles is as long as the clearance that was certified, it fits
-three sizes of screen, and what is drawn can be read and told apart."""
+say, the line between the nearest triangles is as long as the clearance that was certified, the
+program's line is that of the shown time, it fits three sizes of screen, and what is drawn can be
+read and told apart."""
 import csv
 import json
 import pathlib
@@ -178,6 +179,121 @@ def check_plots(browser):
     check(len({tuple(one) for one in ranges}) == 1, f"the plots show ranges of their own: {ranges}")
 
 
+def read_steps(trace):
+    """[(time in s, line)] of the table beside a trace."""
+    table = trace.with_name(trace.name + ".lines").read_text(encoding="utf-8").split("\n")
+    words = [line.split(" ") for line in table[5:] if line and not line.startswith("crc32 ")]
+    return [(int(word[0]) * 1e-6, int(word[1])) for word in words]
+
+
+def current_line(browser, name):
+    """The one marked line, None where there is none; it is in view, and the page did not move."""
+    marked, scrolled = browser.execute_script("""
+        const box = document.getElementById("program_lines").getBoundingClientRect();
+        return [[...document.querySelectorAll("#program_rows [aria-current=true]")].map((row) => {
+          const own = row.getBoundingClientRect(), style = getComputedStyle(row);
+          return [Number(row.querySelector(".number").textContent), row.innerText,
+                  own.top >= box.top - 1 && own.bottom <= box.bottom + 1, style.fontWeight];
+        }), window.scrollY];""")
+    check(len(marked) <= 1, f"{name}: {len(marked)} lines are current")
+    check(scrolled == 0, f"{name}: the page was scrolled to {scrolled}")
+    for line, text, is_seen, weight in marked:
+        check(is_seen, f"{name}: line {line} is current and not in view")
+        check(weight == "700", f"{name}: line {line} differs by its colour alone: {text}")
+    return marked[0][0] if marked else None
+
+
+def check_program(browser, results, steps, program):
+    """The marked line and the picture's words follow the time; the stop has its mark."""
+    browser.execute_script("window.scrollTo(0, 0)")
+    blocks = program.read_text(encoding="utf-8").split("\n")
+    stop = results["stops"][0]
+    check(current_line(browser, "stop") == stop["program_line"], "not the line of the stop")
+    marks = browser.execute_script("""
+        return [...document.querySelectorAll("#program_rows .mark")].map((mark) =>
+          [Number(mark.parentElement.querySelector(".number").textContent), mark.innerText]);""")
+    check([stop["program_line"], "stop"] in marks, f"stop at {stop['program_line']}: {marks}")
+    first, last = browser.execute_script("return [axguard.first, axguard.last]")
+    seen = set()
+    for k in range(41):
+        at = first + (last - first) * k / 40
+        browser.execute_script(f"axguard.goTo({at!r})")
+        wanted = [line for begin, line in steps if begin <= at + 5e-7][-1]
+        seen.add(wanted)
+        check(current_line(browser, f"{at:.3f} s") == (wanted or None),
+              f"{at:.3f} s: not line {wanted}")
+        here, block = browser.execute_script(
+            "return ['here', 'program_text'].map((id) => document.getElementById(id).innerText)")
+        is_here = f"{program.name}:{wanted}" in here.split("\n")
+        check(is_here == (wanted != 0), f"{at:.3f} s: line {wanted}, the picture says {here}")
+        check(block == (blocks[wanted - 1].strip() if wanted else ""), f"line {wanted}: {block}")
+    check(len(seen) > 15, f"only {len(seen)} lines to look for")
+
+
+def check_program_choice(browser, steps):
+    """A click or Enter goes to a line's first time; one tab stop; no line after the end."""
+    def first_time(line):
+        begin = browser.execute_script("return axguard.first")
+        return max(begin, next(at for at, one in steps if one == line))
+
+    browser.execute_script("axguard.goTo((axguard.first + axguard.last) / 2)")
+    before = current_line(browser, "before the click")
+    row = browser.execute_script("""
+        return document.querySelector("#program_rows [aria-current]").nextElementSibling""")
+    line = int(row.find_element("class name", "number").text)
+    ActionChains(browser).move_to_element(row).click().perform()
+    check(line > before and abs(time_of(browser) - first_time(line)) < 2e-6,
+          f"a click on line {line} goes to {time_of(browser)}, not {first_time(line)}")
+    lines = sorted({one for _, one in steps if one})
+    there = lines[lines.index(line) - 2]
+    browser.execute_script("document.getElementById('program_lines').focus()")
+    for _ in range(2):
+        ActionChains(browser).send_keys(Keys.ARROW_UP).perform()
+    check(abs(time_of(browser) - first_time(line)) < 2e-6, "an arrow alone goes somewhere")
+    active = browser.execute_script("""
+        const id = document.activeElement.getAttribute("aria-activedescendant");
+        return document.getElementById(id).querySelector(".number").textContent;""")
+    check(int(active) == there, f"two lines up is {active}, not {there}")
+    ActionChains(browser).send_keys(Keys.ENTER).perform()
+    check(abs(time_of(browser) - first_time(there)) < 2e-6,
+          f"Enter on line {there} goes to {time_of(browser)}, not {first_time(there)}")
+    stops, rows = browser.execute_script("""
+        const section = document.getElementById("program_section");
+        return [[...section.querySelectorAll("*")].filter((e) => e.tabIndex >= 0).map((e) => e.id),
+                section.querySelectorAll("[role=option]").length];""")
+    check(stops == ["program_lines"], f"tab stops of the program: {stops}")
+    firsts = browser.execute_script("""
+        const list = Object.create(ProgramList.prototype);  // 7 is a loop's, 9 begins after the end
+        list.program = {steps: {time_s: [0, 1, 2, 3, 4], line: [6, 7, 8, 7, 9]}};
+        return [[0, 3.5], [1.5, 4], [2, 3]].map((span) => [...list.readFirstTimes(span)]);""")
+    check(firsts == [[[6, 0], [7, 1], [8, 2]], [[7, 1.5], [8, 2], [9, 4]], [[8, 2], [7, 3]]],
+          f"first times of lines: {firsts}")
+    check(0 < rows < 100, f"{rows} rows of {len(lines)} exist at once")
+    before = time_of(browser)
+    disabled = browser.execute_script("""
+        const box = document.getElementById("program_lines");
+        box.scrollTop = box.scrollHeight;
+        axguard.program.render();
+        const row = document.querySelector("#program_rows > :last-child");
+        row.click();
+        return [Number(row.querySelector(".number").textContent),
+                row.getAttribute("aria-disabled")];""")
+    check(disabled == [lines[-1], "true"] and time_of(browser) == before,
+          f"the last line, after the stop: {disabled}, {time_of(browser)}")
+
+
+def check_hostile_program(browser, evil):
+    """A block is text, with its escapes; its row keeps the order of its parts."""
+    found = browser.execute_script("""
+        const rows = [...document.querySelectorAll("#program_rows [role=option]")];
+        const row = rows.find((one) => one.innerText.includes("script"));
+        const left = (e) => e.getBoundingClientRect().left;
+        return [document.getElementById("evil") === null, row && row.querySelector("bdi").innerText,
+                row && left(row.querySelector(".number")) < left(row.querySelector("bdi")),
+                row && getComputedStyle(row.querySelector("bdi")).unicodeBidi];""")
+    check(found == [True, evil, True, "isolate"], f"hostile block: {found}")
+
+
 def check_jogs(browser):
     """Each axis goes forward and back, one after the other, and the bodies with it."""
     shown = "return [axguard.positions, axguard.view.bodies.map((b) => b.matrix.elements)]"
@@ -203,7 +319,7 @@ def check_sizes(browser, name):
             const box = (e) => e.getBoundingClientRect();
             const isShown = (e) => e.offsetParent !== null;
             const all = [...document.querySelectorAll("main *")].filter(isShown);
-            const scrolls = (e) => e.closest("#words") !== null;
+            const scrolls = (e) => e.closest("#words, #program_rows") !== null;
             const legends = [...document.querySelectorAll(".legend")].filter(isShown);
             return [document.documentElement.scrollWidth - window.innerWidth,
               all.filter((e) => !scrolls(e) && box(e).width > 0 &&
@@ -220,7 +336,8 @@ def check_sizes(browser, name):
         check(not covered, f"{at}: a legend covers a plot: {covered}")
         check(not small, f"{at}: too small to be seen: {small}")
         missed = browser.execute_script("""
-            return ["play", "next_stop", "contact", "whole", "slider"].filter((id) => {
+            return ["play", "next_stop", "contact", "whole", "slider",
+                    ...(axguard.program ? ["program_lines"] : [])].filter((id) => {
               const element = document.getElementById(id);
               element.scrollIntoView({block: "center"});
               const box = element.getBoundingClientRect();
@@ -383,6 +500,11 @@ def main():
         run([10], axguard, "replay", levels, trace, "--mesh-root", machine.parent,
             "--report", folder / "levels.html", "--csv", folder / "levels.csv", "--deadline-us",
             "1000000")
+        hostile, evil = folder / "hostile.ngc", "</script><b id=evil>x</b>"
+        hostile.write_text(f"G21 G90 G94\nT1 M6\nG0 Z50 (\u202e{evil})\nG0 X10\n", encoding="utf-8")
+        run([0], axguard, "simulate", machine, hostile, "-o", folder / "hostile.log")
+        run([0], axguard, "replay", machine, folder / "hostile.log", "--report",
+            folder / "hostile.html")
         driven = folder / "drive.html"
         run([10], axguard, "drive", machine, program, "--report", driven)
         jogs = folder / "check.html"
@@ -395,6 +517,8 @@ def main():
                 if mode == "contact":
                     check_touching(browser, results)
                 check_why(browser, results, mode)
+                check_program(browser, results, read_steps(trace), program)
+                check_program_choice(browser, read_steps(trace))
                 check_contact(browser, mode)
                 check_sizes(browser, mode)
             check_contrast(browser)
@@ -405,10 +529,14 @@ def main():
             look(browser, folder / "levels.html")
             with open(folder / "levels.csv", encoding="utf-8") as lines:
                 check_levels(browser, list(csv.DictReader(lines)))
+            look(browser, folder / "hostile.html")
+            check_hostile_program(browser, f"G0 Z50 (\\u202e{evil})")
             look(browser, driven)
             check(browser.find_element("id", "headline").text.startswith("STOP"), "drive: no stop")
             check_lines(browser)
             look(browser, jogs)
+            check(not browser.find_element("id", "program_section").is_displayed(),
+                  "check: a program where there is none")
             check_sizes(browser, "check")
             check_jogs(browser)
         finally:
