@@ -253,6 +253,41 @@ std::optional<OpenPart> open_part(const Machine& machine, const Engine& engine,
     return out;
 }
 
+PairDistances pair_distances(const Machine& machine, const Engine& engine,
+                             const UnprovenPair& pair) noexcept {
+    PairDistances out;
+    out.need = distance_need(machine, pair);
+    out.within_mm = std::clamp(out.need.sum_mm(), kClearanceWithinMm, kMarginMmMax);
+    out.available_mm = available_mm(machine, engine, pair, out.within_mm);
+    out.open = open_part(machine, engine, pair);
+    return out;
+}
+
+std::optional<Query> pose_query(const Machine& machine, const AxisSnapshot& snapshot,
+                                std::uint32_t pair, PairQueries& room) noexcept {
+    make_contact_queries(machine, snapshot, room);
+    for (std::uint32_t i = 0; room.status == SnapshotStatus::ok && i < room.count; ++i) {
+        if (room.pair[i] == pair) {
+            return room.queries[i];
+        }
+    }
+    return std::nullopt;
+}
+
+PairDistances pose_distances(const Engine& engine, const Query& query) noexcept {
+    PairDistances out;
+    out.need.margin_mm = query.r_mm;
+    out.need.arithmetic_mm = query.pose_error_mm;
+    out.within_mm = std::max(kClearanceWithinMm, 2 * query.r_mm);
+    Query clearance = query;
+    clearance.kind = QueryKind::clearance;
+    clearance.r_mm = out.within_mm;
+    QueryResult result;
+    engine({&clearance, 1}, {&result, 1});
+    out.available_mm = result.status == QueryStatus::ok ? result.clearance_mm : 0;
+    return out;
+}
+
 bool is_proven_with(const Machine& machine, const Engine& engine, const UnprovenPair& pair,
                     const ProofChange& change) {
     auto prover = prover_in_force(machine);

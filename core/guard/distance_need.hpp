@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "core/certificate/pair_queries.hpp"
 #include "core/certificate/stop_certificate.hpp"
 #include "core/collision/engine.hpp"
 #include "core/machine/machine.hpp"
@@ -67,6 +68,28 @@ struct OpenPart {
 /// Nothing: the reach was not halved.
 [[nodiscard]] std::optional<OpenPart> open_part(const Machine& machine, const Engine& engine,
                                                 const UnprovenPair& pair) noexcept;
+
+// Clearances are of interest up to this, mm, and further where a proof needs more.
+inline constexpr double kClearanceWithinMm = 50.0;
+
+/// Needed against available distance of one pair that was not proven.
+struct PairDistances {
+    DistanceNeed need;
+    double available_mm = 0;  // certified at the sampled position; 0: none
+    double within_mm = 0;     // it was measured up to this
+    std::optional<OpenPart> open;
+};
+/// Of a certificate. Precondition: `pair` is known, and not blind.
+/// Cost: the need, and two queries.
+[[nodiscard]] PairDistances pair_distances(const Machine& machine, const Engine& engine,
+                                           const UnprovenPair& pair) noexcept;
+
+/// Contact mode: the query of the pair at the sampled pose. Nothing: there is none.
+/// @param room  for all queries of that pose
+[[nodiscard]] std::optional<Query> pose_query(const Machine& machine, const AxisSnapshot& snapshot,
+                                              std::uint32_t pair, PairQueries& room) noexcept;
+/// At that pose: margin and arithmetic are all of its need.
+[[nodiscard]] PairDistances pose_distances(const Engine& engine, const Query& query) noexcept;
 
 /// What is different in a second proof of the pair.
 struct ProofChange {

@@ -105,6 +105,7 @@ LiveView view_of(const Shared& shared, const GuardNode& guard, std::int64_t now_
             .phase_us = guard.phase_us(),
             .reason = guard.reason(),
             .pair = guard.pair(),
+            .stop_query = guard.stop_query(),
             .withheld = guard.withheld(),
             .stands = guard.stands(now_us),
             .is_confirmed = guard.guard().is_confirmed,
@@ -120,6 +121,9 @@ void show(Shared& shared, const GuardNode& guard, std::int64_t now_us) noexcept 
     if (shared.wants_view.exchange(false)) {
         // Full where the logger is slow: it asks again.
         [[maybe_unused]] const bool is_pushed = shared.views.push(view());
+    }
+    if (shared.options.why != nullptr) {
+        shared.options.why->set_stop(guard.stop_query());
     }
     answer(shared.status, view);
 }
@@ -188,6 +192,9 @@ void* run_engine(void* argument) {
             // Full only where the bus thread stands still; then nobody is there to use a result.
             [[maybe_unused]] const bool is_pushed = shared.queues.results.push(live_result);
             wake(shared.wake_bus);
+            if (shared.options.why != nullptr) {  // the permit or the stop is on its way
+                shared.options.why->note(live_result, shared.chain);
+            }
         });
     }
     return nullptr;
@@ -324,7 +331,7 @@ void* run_status(void* argument) {
     Shared& shared = *static_cast<Shared*>(argument);
     setpriority(PRIO_PROCESS, 0, kStatusNice);  // of this thread alone, on Linux
     serve_status(*shared.options.status_socket, *shared.options.status_line, shared.status,
-                 shared.is_ending);
+                 shared.options.why, shared.is_ending);
     return nullptr;
 }
 

@@ -14,6 +14,7 @@
 #include "firmware_if/can/socket_can.hpp"
 #include "firmware_if/guard/guard_chain.hpp"
 #include "firmware_if/guard/guard_node.hpp"
+#include "firmware_if/guard/why_desk.hpp"
 #include "firmware_if/system/latch_file.hpp"
 #include "firmware_if/system/status_socket.hpp"
 
@@ -32,6 +33,7 @@ struct ThreadOptions {
     // State for every user; null: no socket.
     const StatusSocket* status_socket = nullptr;
     const StatusLine* status_line = nullptr;
+    WhyDesk* why = nullptr;  // null: the line has no distances
 };
 
 /// How a run ended.

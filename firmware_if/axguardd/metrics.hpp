@@ -37,6 +37,7 @@ struct LiveView {
     std::int64_t time_us = 0, phase_us = 0;  // of this view; when the phase began
     StopReason reason = StopReason::none;    // of the newest stop, and its pair
     std::uint32_t pair = kNoIndex;
+    std::uint32_t stop_query = 0;  // GuardNode::stop_query
     WithheldPermit withheld;
     bool stands = false, is_confirmed = false, has_session = false;
     AdmissionGauge admission;  // at the start

@@ -184,6 +184,11 @@ int guard_bus(const RunArguments& arguments, LoadedMachine& loaded) {
     const StatusLine status_line(machine, arguments.bus, arguments.mode,
                                  configuration_hash(machine, loaded.meshes));
     ThreadOptions threads = with_black_box(arguments, loaded, line ? &*line : nullptr);
+    // Measured with the rest: the admission counts its memory.
+    std::optional<CpuEngine> status_engine =
+        status_socket.is_open() ? CpuEngine::over_trees(engines.cpu->trees(), machine.capacities)
+                                : std::nullopt;
+    WhyDesk why(machine, status_engine ? status_engine->engine() : Engine{});
     if (!is_admitted(arguments, loaded, engines, threads.admission)) {
         return kExitUnfit;
     }
@@ -191,6 +196,7 @@ int guard_bus(const RunArguments& arguments, LoadedMachine& loaded) {
         threads.status_socket = &status_socket;
     }
     threads.status_line = &status_line;
+    threads.why = threads.status_socket != nullptr ? &why : nullptr;
     const Engine engine = engines.engine();
     GuardChain chain(machine, engine, *engines.containment_test, parts.stop_certificate(),
                      parts.speed_advisory(), parts.margin_advisory());

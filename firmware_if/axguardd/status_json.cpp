@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "config/text/quote_text.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
@@ -45,7 +46,62 @@ void put_pair(Line& line, const char* key, const Machine& machine, std::uint32_t
              machine.bodies[pair.b].name);
 }
 
-void put_state(Line& line, const LiveView& view, const Machine& machine, std::int64_t now_us) {
+void put_mm(Line& line, const char* key, double value_mm) {
+    line.put(",\"{}\":{:.4f}", key, value_mm);
+}
+
+/// In the words of docs/reference/json.md, "why"; null: of another kind of reach.
+void put_parts(Line& line, const PairWhy& why) {
+    const DistanceNeed& need = why.distances.need;
+    const std::array<std::pair<const char*, double>, 4> parts{
+        {{"until_braking_mm", need.until_braking_mm},
+         {"braking_mm", need.braking_mm},
+         {"position_error_mm", need.position_error_mm},
+         {"speed_uncertainty_mm", need.speed_uncertainty_mm}}};
+    if (why.is_whole) {
+        put_mm(line, "to_standstill_mm", need.until_braking_mm);
+    } else {
+        line.put(",\"to_standstill_mm\":null");
+    }
+    for (const auto& [key, value_mm] : parts) {
+        if (why.is_whole || why.is_pose) {
+            line.put(",\"{}\":null", key);
+        } else {
+            put_mm(line, key, value_mm);
+        }
+    }
+    put_mm(line, "margin_mm", need.margin_mm);
+    line.put(",\"arithmetic_mm\":{:.4g}", need.arithmetic_mm);  // of 1e-7 mm and more
+}
+
+void put_why(Line& line, const char* key, const Machine& machine,
+             const std::optional<PairWhy>& why) {
+    if (!why) {
+        line.put(",\"{}\":null", key);
+        return;
+    }
+    const PairDistances& distances = why->distances;
+    line.put(",\"{}\":{{\"needed_mm\":{:.4f}", key, distances.need.sum_mm());
+    put_mm(line, "available_mm", distances.available_mm);
+    put_mm(line, "within_mm", distances.within_mm);
+    put_parts(line, *why);
+    line.put(",\"list_full\":{},\"jog\":{}", why->is_list_full, why->is_jog);
+    if (why->tool < machine.tools.size()) {
+        line.put(",\"tool\":{}", machine.tools[why->tool].number);
+    } else {
+        line.put(",\"tool\":null");
+    }
+    if (distances.open) {
+        line.put(",\"open\":{{\"needed_mm\":{:.4f}", distances.open->needed_mm);
+        put_mm(line, "available_mm", distances.open->available_mm);
+        line.put("}}}}");
+    } else {
+        line.put(",\"open\":null}}");
+    }
+}
+
+void put_state(Line& line, const LiveView& view, const GuardWhy& why, const Machine& machine,
+               std::int64_t now_us) {
     const bool is_stopped = view.phase == GuardPhase::stopped;
     line.put(",\"age_ms\":{},\"phase\":\"{}\",\"phase_ms\":{}",
              std::max<std::int64_t>(0, now_us - view.time_us) / 1000, to_text(view.phase),
@@ -54,9 +110,11 @@ void put_state(Line& line, const LiveView& view, const Machine& machine, std::in
              to_text(is_stopped ? view.cause : GuardFault::none),
              to_text(is_stopped ? view.reason : StopReason::none));
     put_pair(line, "pair", machine, is_stopped ? view.pair : kNoIndex);
+    put_why(line, "why", machine, is_stopped ? why.stop : std::nullopt);
     line.put(",\"withheld\":\"{}\",\"withheld_reason\":\"{}\"", to_text(view.withheld.why),
              to_text(view.withheld.reason));
     put_pair(line, "withheld_pair", machine, view.withheld.pair);
+    put_why(line, "withheld_why", machine, why.withheld);
     line.put(",\"stands\":{},\"confirmed\":{}", view.stands, is_stopped && view.is_confirmed);
     if (has_session(machine.can)) {
         line.put(",\"session\":{}", view.has_session);
@@ -75,6 +133,17 @@ void put_counters(Line& line, const LiveView& view) {
     line.put(",\"operator_acts\":{},\"operator_refused\":{},\"operator_ignored\":{}",
              counters.operator_acts, counters.operator_refused, counters.operator_ignored);
 }
+
+/// Parts of a need that not every reach has.
+struct WhyPart {
+    const char* key;
+    const char* words;
+};
+constexpr std::array<WhyPart, 5> kWhyParts{{{"to_standstill_mm", "motion to standstill"},
+                                            {"until_braking_mm", "motion until braking"},
+                                            {"braking_mm", "braking"},
+                                            {"position_error_mm", "uncertainty of position"},
+                                            {"speed_uncertainty_mm", "of speed"}}};
 
 constexpr std::uint64_t kHeldMs = 1000;  // a bus thread that turns has shown more since
 
@@ -113,6 +182,41 @@ bool is_pair_or_null(const Json& value) {
     return value.is_null() ||
            (value.is_array() && value.size() == 2 && value[0].is_string() && value[1].is_string());
 }
+bool is_mm(const Json& json, const char* key) {
+    const auto found = json.find(key);
+    return found != json.end() && found->is_number();
+}
+bool is_mm_or_null(const Json& json, const char* key) {
+    const auto found = json.find(key);
+    return found != json.end() && (found->is_number() || found->is_null());
+}
+bool has_distances(const Json& value) {
+    return value.is_object() && is_mm(value, "needed_mm") && is_mm(value, "available_mm");
+}
+bool is_distances_or_null(const Json& value) {
+    return value.is_null() || has_distances(value);
+}
+bool is_count_or_null(const Json& value) {
+    return value.is_null() || is_count(value);
+}
+bool is_why_or_null(const Json& value) {
+    if (value.is_null()) {
+        return true;
+    }
+    if (!has_distances(value) || !is_mm(value, "within_mm") || !is_mm(value, "margin_mm") ||
+        !is_mm(value, "arithmetic_mm")) {
+        return false;
+    }
+    const auto is_part = [&value](const char* key) { return is_mm_or_null(value, key); };
+    const auto is_in = [&value](const char* key, IsOfType is_of_type) {
+        const auto found = value.find(key);
+        return found != value.end() && is_of_type(*found);
+    };
+    return std::all_of(kWhyParts.begin(), kWhyParts.end(),
+                       [&](const WhyPart& part) { return is_part(part.key); }) &&
+           is_in("list_full", is_flag) && is_in("jog", is_flag) &&
+           is_in("tool", is_count_or_null) && is_in("open", is_distances_or_null);
+}
 bool is_hashes(const Json& value) {
     return value == "required" || value == "none";
 }
@@ -128,14 +232,16 @@ constexpr std::array<StatusKey, 6> kHeadKeys{{{"axguardd", is_text},
                                               {"configuration_sha256", is_text},
                                               {"mode", is_text},
                                               {"phase", is_text}}};
-constexpr std::array<StatusKey, 24> kViewKeys{{{"age_ms", is_count},
+constexpr std::array<StatusKey, 26> kViewKeys{{{"age_ms", is_count},
                                                {"phase_ms", is_count},
                                                {"cause", is_text},
                                                {"reason", is_text},
                                                {"pair", is_pair_or_null},
+                                               {"why", is_why_or_null},
                                                {"withheld", is_text},
                                                {"withheld_reason", is_text},
                                                {"withheld_pair", is_pair_or_null},
+                                               {"withheld_why", is_why_or_null},
                                                {"stands", is_flag},
                                                {"confirmed", is_flag},
                                                {"session", is_flag_or_null},
@@ -184,6 +290,41 @@ std::string words_of_stop(const Json& json) {
                        pair_at(json, "pair"));
 }
 
+double mm_at(const Json& json, const char* key) {
+    return json.at(key).get<double>();
+}
+
+/// Lines below the stop or the withheld permit; none where no distances are known.
+std::string words_of_why(const Json& why) {
+    if (why.is_null()) {
+        return {};
+    }
+    const double available_mm = mm_at(why, "available_mm");
+    const bool is_all = available_mm < mm_at(why, "within_mm");
+    std::string out = fmt::format(
+        "  needs {:.4f} mm and has {}", mm_at(why, "needed_mm"),
+        available_mm <= 0 ? "none"
+                          : fmt::format("{}{:.4f} mm", is_all ? "" : "at least ", available_mm));
+    out +=
+        why.at("tool").is_null() ? "\n    " : fmt::format(", tool {}\n    ", count_at(why, "tool"));
+    for (const WhyPart& part : kWhyParts) {
+        if (!why.at(part.key).is_null()) {
+            out += fmt::format("{} {:.4f}, ", part.words, mm_at(why, part.key));
+        }
+    }
+    out += fmt::format("{} {:g}, arithmetic {:.2g} mm\n",
+                       is_at(why, "jog") ? "clearance to keep in this jog" : "margin",
+                       mm_at(why, "margin_mm"), mm_at(why, "arithmetic_mm"));
+    const Json& open = why.at("open");
+    if (!open.is_null()) {
+        out += fmt::format("    the first part left open needs {:.4f} mm and has {:.4f} mm\n",
+                           mm_at(open, "needed_mm"), mm_at(open, "available_mm"));
+    }
+    return out + (is_at(why, "list_full")
+                      ? "    a list of the engine was full (cycle: in the machine file)\n"
+                      : "");
+}
+
 /// Nothing in armed: the permit then flows, or the guard stops.
 std::string words_of_withheld(const Json& json) {
     const std::string why = text_at(json, "withheld");
@@ -201,7 +342,8 @@ std::string words_of_guard(const Json& json) {
 }
 
 std::string words_of_view(const Json& json) {
-    std::string out = words_of_withheld(json);
+    std::string out = words_of_why(json.at("why")) + words_of_withheld(json) +
+                      words_of_why(json.at("withheld_why"));
     if (count_at(json, "age_ms") > kHeldMs) {
         out += fmt::format("no update for {} ms: the bus thread of the guard is blocked\n",
                            count_at(json, "age_ms"));
@@ -244,14 +386,14 @@ StatusLine::StatusLine(const Machine& machine, std::string_view bus, std::string
     head_.pop_back();  // what follows is in the same braces
 }
 
-std::size_t StatusLine::write(const LiveView* view, std::int64_t now_us,
+std::size_t StatusLine::write(const LiveView* view, const GuardWhy& why, std::int64_t now_us,
                               std::span<char> out) const noexcept {
     Line line(out);
     line.put("{}", head_);
     if (view == nullptr) {
         line.put(",\"phase\":\"init\"");
     } else {
-        put_state(line, *view, machine_, now_us);
+        put_state(line, *view, why, machine_, now_us);
         put_counters(line, *view);
     }
     line.put("}}\n");

@@ -10,6 +10,7 @@
 
 #include "core/machine/machine.hpp"
 #include "firmware_if/axguardd/metrics.hpp"
+#include "firmware_if/guard/why_desk.hpp"
 
 namespace axg {
 
@@ -23,9 +24,10 @@ class StatusLine {
                std::string_view configuration_sha256);
 
     /// @param view  null: the guard has shown nothing yet
+    /// @param why   of that view
     /// @param out   kStatusLineBytesMax at least; the line ends with a line feed
     /// @return      how much was written. No allocation
-    [[nodiscard]] std::size_t write(const LiveView* view, std::int64_t now_us,
+    [[nodiscard]] std::size_t write(const LiveView* view, const GuardWhy& why, std::int64_t now_us,
                                     std::span<char> out) const noexcept;
 
   private:

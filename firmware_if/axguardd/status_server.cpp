@@ -35,8 +35,9 @@ bool take_view(StatusExchange& exchange, const std::atomic<bool>& is_ending,
 }  // namespace
 
 void serve_status(const StatusSocket& socket, const StatusLine& line, StatusExchange& exchange,
-                  const std::atomic<bool>& is_ending) noexcept {
+                  WhyDesk* why, const std::atomic<bool>& is_ending) noexcept {
     LiveView view;
+    GuardWhy distances;
     bool has_view = false;
     std::array<char, kStatusLineBytesMax> text{};
     while (!is_ending.load()) {
@@ -45,8 +46,11 @@ void serve_status(const StatusSocket& socket, const StatusLine& line, StatusExch
         }
         const auto make_text = [&] {
             has_view = take_view(exchange, is_ending, view) || has_view;
+            if (has_view && why != nullptr) {
+                distances = why->why(view.stop_query, view.withheld);
+            }
             return std::span(text).first(
-                line.write(has_view ? &view : nullptr, monotonic_us(), text));
+                line.write(has_view ? &view : nullptr, distances, monotonic_us(), text));
         };
         if (socket.serve(make_text) == 0) {
             pause_ms(kViewWaitMs);  // no descriptors are left: no reason to be busy

@@ -9,6 +9,7 @@
 #include "firmware_if/axguardd/metrics.hpp"
 #include "firmware_if/axguardd/status_json.hpp"
 #include "firmware_if/guard/spsc_queue.hpp"
+#include "firmware_if/guard/why_desk.hpp"
 #include "firmware_if/system/status_socket.hpp"
 
 namespace axg {
@@ -33,7 +34,8 @@ void answer(StatusExchange& exchange, const MakeView& view) noexcept {
 }
 
 /// The status thread, until `is_ending`. The socket listens. No allocation.
+/// @param why  null: the line has no distances
 void serve_status(const StatusSocket& socket, const StatusLine& line, StatusExchange& exchange,
-                  const std::atomic<bool>& is_ending) noexcept;
+                  WhyDesk* why, const std::atomic<bool>& is_ending) noexcept;
 
 }  // namespace axg

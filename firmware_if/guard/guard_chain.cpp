@@ -127,6 +127,13 @@ UnprovenPair GuardChain::unproven(std::uint32_t pair) const noexcept {
                : UnprovenPair{};
 }
 
+RefusedCycle GuardChain::refused(const CycleResult& result) const noexcept {
+    return {.reason = result.reason,
+            .pair = result.pair,
+            .snapshot = snapshot_,
+            .unproven = unproven(result.pair)};
+}
+
 std::span<const QueryResult> GuardChain::results() const noexcept {
     return {results_.data(), is_queried() ? pair_queries_.count + 2 : 0};
 }

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 
 #include "core/certificate/pair_queries.hpp"
 #include "core/certificate/stop_certificate.hpp"
@@ -31,6 +32,17 @@ struct EvaluationClock {
 
     [[nodiscard]] std::int64_t now() const { return now_ns == nullptr ? 0 : now_ns(clock); }
 };
+
+/// A cycle that withheld the permit or stopped, as the chain left it.
+struct RefusedCycle {
+    std::uint32_t query = 0;  // LiveQuery::number; 0: not of a live guard
+    StopReason reason = StopReason::none;
+    std::uint32_t pair = kNoIndex;
+    AxisSnapshot snapshot{};
+    UnprovenPair unproven{};
+};
+// The engine thread copies it.
+static_assert(std::is_trivially_copyable_v<RefusedCycle> && sizeof(RefusedCycle) <= 4096);
 
 /// One cycle is take (a snapshot), evaluate, decide, and when its frames are sent,
 /// update_advisories.
@@ -74,6 +86,8 @@ class GuardChain {
     }
     /// unproven_pair of the last decision; not known in contact mode and without a pair.
     [[nodiscard]] UnprovenPair unproven(std::uint32_t pair) const noexcept;
+    /// The last decision, which gave no permit. Before update_advisories.
+    [[nodiscard]] RefusedCycle refused(const CycleResult& result) const noexcept;
     [[nodiscard]] const MarginAdvisory* margin_advisory() const noexcept {
         return margin_advisory_;
     }

@@ -176,12 +176,14 @@ void GuardNode::on_result(const LiveResult& live_result, std::int64_t now_us) no
     if (live_result.result.is_stop && guard_.phase != GuardPhase::stopped) {
         reason_ = live_result.result.reason;
         pair_ = live_result.result.pair;
+        stop_query_ = live_result.number;
     }
     using Why = WithheldPermit::Why;
     const CycleResult& result = live_result.result;
     withheld_ = {.why = result.has_permit ? Why::nothing : Why::not_proven,
                  .reason = result.reason,
-                 .pair = result.pair};
+                 .pair = result.pair,
+                 .query = live_result.number};
     GuardEvent event =
         guard_event_of(live_result.result, live_result.period, now_us - live_result.latched_us);
     if (live_result.done_us - live_result.arrived_us > times_.deadline_us) {

@@ -65,6 +65,7 @@ struct WithheldPermit {
     Why why = Why::no_sample;
     StopReason reason = StopReason::none;
     std::uint32_t pair = kNoIndex;
+    std::uint32_t query = 0;  // not_proven: LiveQuery::number; 0: none
 };
 [[nodiscard]] const char* to_text(WithheldPermit::Why why) noexcept;
 
@@ -123,6 +124,12 @@ class GuardNode {
     /// Of the newest stop.
     [[nodiscard]] StopReason reason() const noexcept { return reason_; }
     [[nodiscard]] std::uint32_t pair() const noexcept { return pair_; }  // kNoIndex: none
+    /// Query whose verdict is the stop in force; 0: there is none, or it has another cause.
+    [[nodiscard]] std::uint32_t stop_query() const noexcept {
+        const bool is_verdict =
+            guard_.phase == GuardPhase::stopped && guard_.cause == GuardFault::verdict;
+        return is_verdict ? stop_query_ : 0;
+    }
     /// When the phase began.
     [[nodiscard]] std::int64_t phase_us() const noexcept { return phase_us_; }
     [[nodiscard]] const WithheldPermit& withheld() const noexcept { return withheld_; }
@@ -201,7 +208,7 @@ class GuardNode {
     std::uint32_t submitted_ = 0, owed_ = 0, completed_ = 0, epoch_ = 0;
     std::int64_t waiting_since_us_ = 0;  // for the engine's next result
     StopReason reason_ = StopReason::none;
-    std::uint32_t pair_ = kNoIndex;
+    std::uint32_t pair_ = kNoIndex, stop_query_ = 0;
     std::int64_t phase_us_;
     WithheldPermit withheld_;
     // What kept the guard from being ready when it was last said, and when it may be said next.

@@ -92,6 +92,7 @@ class LivePage {
     this.writeHeadline(state.kind, state.headline, state.since_ms);
     this.writeNotes(state.notes);
     this.writePermit(state);
+    this.writeStateWhy(state);
     this.writeClearance(state);
     this.writeAxes(state);
     this.writeGuard(state);
@@ -164,6 +165,27 @@ class LivePage {
     }
     if (guard && guard.withheld) rows.push(["withheld", guard.withheld]);
     this.writeList("permit", rows);
+  }
+
+  /** Needed and available distance of each stop and each permit withheld, and the parts. */
+  writeStateWhy({why: whys}) {
+    const mm = (value) => `${value.toFixed(4)} mm`;
+    const rows = whys.flatMap(({of, pair, distances: why, words}) => {
+      const tool = why && why.tool !== null ? `, tool ${why.tool}` : "";
+      const head = pair === null ? [] : [[of, `${pair}${tool}`, "strong"]];
+      if (!why) return [...head, [pair === null ? of : "distances", words, "old"]];
+      const isFar = why.available_mm >= why.within_mm;
+      const open = why.open ? [["first part left open",
+        `needs ${mm(why.open.needed_mm)} and has ${mm(why.open.available_mm)}`]] : [];
+      return [...head, ["needed", mm(why.needed_mm), "strong"],
+        ["available", why.available_mm <= 0 ? "none"
+          : `${isFar ? "at least " : ""}${mm(why.available_mm)}`, "strong"],
+        ...WHY_PARTS.filter(([key]) => why[key] !== null).map(([key, label]) =>
+          [key === "margin_mm" && why.jog ? "clearance to keep in this jog" : label, mm(why[key])]),
+        ...open, ...(why.list_full ? [["engine", "a list was full"]] : [])];
+    });
+    this.byId("why_section").hidden = rows.length === 0;
+    this.writeList("why", rows);
   }
 
   writeClearance({hints}) {

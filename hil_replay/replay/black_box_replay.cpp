@@ -212,10 +212,7 @@ void BlackBoxReplay::on(const LiveResult& live_result) {
         chain_.decide(queried->event.state == ReceiverState::valid, queried->is_armed);
     withheld_.reset();
     if (!made.has_permit) {
-        withheld_ = {.reason = made.reason,
-                     .pair = made.pair,
-                     .snapshot = chain_.snapshot(),
-                     .unproven = chain_.unproven(made.pair)};
+        withheld_ = chain_.refused(made);
     }
     if (guard_) {
         LiveResult dated = live_result;

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "core/base/time_histogram.hpp"
-#include "core/guard/distance_need.hpp"
 #include "firmware_if/guard/black_box_record.hpp"
 #include "firmware_if/guard/guard_chain.hpp"
 #include "hil_replay/replay/recorded_guard.hpp"
@@ -32,14 +31,6 @@ struct BlackBoxStop {
     ReceiverFault fault = ReceiverFault::none;  // cause input
     std::int64_t time_us = 0;
     std::int64_t latched_us = 0;  // of the sample; 0: none
-};
-
-/// A cycle that withheld the permit or stopped, as the chain left it: what why_of is asked about.
-struct RefusedCycle {
-    StopReason reason = StopReason::none;
-    std::uint32_t pair = kNoIndex;
-    AxisSnapshot snapshot{};
-    UnprovenPair unproven{};
 };
 
 struct ReplayedBlackBox {

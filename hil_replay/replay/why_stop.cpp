@@ -17,8 +17,6 @@
 namespace axg {
 namespace {
 
-constexpr double kWithinMm = 50.0;  // clearances are of interest up to this
-
 using Limits = std::array<AxisLimits, kAxesMax>;
 
 /// What the trace shows of the pair's axes, where that is less than what is declared.
@@ -91,34 +89,27 @@ StopWhy why_at_pose(const WhySources& sources, const StopFacts& stop) {
     const Machine& machine = sources.loaded.machine;
     StopWhy why;
     why.pair = stop.pair;
-    why.within_mm = kWithinMm;
+    why.within_mm = kClearanceWithinMm;
     why.cause = stop.reason == StopReason::contained  ? WhyCause::contained
                 : stop.reason == StopReason::capacity ? WhyCause::capacity
                                                       : WhyCause::margin;
     why.is_list_full = why.cause == WhyCause::capacity;
-    const auto queries = std::make_unique<PairQueries>();
-    make_contact_queries(machine, stop.snapshot, *queries);
-    for (std::uint32_t i = 0; queries->status == SnapshotStatus::ok && i < queries->count; ++i) {
-        if (queries->pair[i] != stop.pair) {
-            continue;
-        }
-        Query query = queries->queries[i];
+    const auto room = std::make_unique<PairQueries>();
+    std::optional<Query> query = pose_query(machine, stop.snapshot, stop.pair, *room);
+    if (!query) {
+        return why;
+    }
+    const PairDistances distances = pose_distances(sources.engine, *query);
+    why.need = distances.need;
+    why.within_mm = distances.within_mm;
+    why.available_mm = why.worst_mm = distances.available_mm;
+    query->kind = QueryKind::farther;
+    query->r_mm = std::floor(why.available_mm * 1e3) * 1e-3;
+    if (query->r_mm > 0 && query->r_mm < why.need.margin_mm) {
         QueryResult result;
-        why.need.margin_mm = query.r_mm;
-        why.need.arithmetic_mm = query.pose_error_mm;
-        query.kind = QueryKind::clearance;
-        query.r_mm = std::max(kWithinMm, 2 * why.need.margin_mm);
-        why.within_mm = query.r_mm;
-        sources.engine({&query, 1}, {&result, 1});
-        why.available_mm = why.worst_mm =
-            result.status == QueryStatus::ok ? result.clearance_mm : 0;
-        query.kind = QueryKind::farther;
-        query.r_mm = std::floor(why.available_mm * 1e3) * 1e-3;
-        if (query.r_mm > 0 && query.r_mm < why.need.margin_mm) {
-            sources.engine({&query, 1}, {&result, 1});
-            if (result.status == QueryStatus::ok && result.proof == Proof::far) {
-                why.remedies.margin_mm = query.r_mm;
-            }
+        sources.engine({&*query, 1}, {&result, 1});
+        if (result.status == QueryStatus::ok && result.proof == Proof::far) {
+            why.remedies.margin_mm = query->r_mm;
         }
     }
     return why;
@@ -170,14 +161,15 @@ std::optional<StopWhy> why_of(const WhySources& sources, const StopFacts& stop) 
         why.cause = WhyCause::not_known;
         return why;
     }
-    why.need = distance_need(machine, pair);
+    const PairDistances distances = pair_distances(machine, engine, pair);
+    why.need = distances.need;
+    why.within_mm = distances.within_mm;
+    why.available_mm = distances.available_mm;
+    why.open = distances.open;
     why.is_list_full = is_overflow(pair.result.status);
     why.full = pair.result.status;
     why.queries = pair.result.queries;
-    why.within_mm = std::clamp(why.need.sum_mm(), kWithinMm, kMarginMmMax);
-    why.available_mm = available_mm(machine, engine, pair, why.within_mm);
     why.worst_mm = least_clearance_mm(machine, engine, pair, why.within_mm);
-    why.open = open_part(machine, engine, pair);
     const ShownLimits shown = shown_limits(sources, pair);
     why.remedies = find_remedies(machine, engine, pair,
                                  {.tries_plans = why.worst_mm > why.need.margin_mm,

@@ -107,6 +107,17 @@ Json hints_json(const WatchInput& input) {
             {"age_ms", age_ms(bus.hints_us, input.now_us)}};
 }
 
+Json whys_json(const WatchInput& input) {
+    auto out = Json::array();
+    for (const WatchWhy& why : whys_of(input)) {
+        out.push_back({{"of", why.of},
+                       {"pair", why.pair.empty() ? Json() : Json(why.pair)},
+                       {"distances", why.distances.empty() ? Json() : Json::parse(why.distances)},
+                       {"words", why.words}});
+    }
+    return out;
+}
+
 Json guard_json(const WatchInput& input) {
     if (!input.status) {
         return {};
@@ -155,6 +166,8 @@ std::optional<GuardLine> read_guard_line(std::string_view line) {
     out.cause = json.at("cause").get<std::string>();
     out.reason = json.at("reason").get<std::string>();
     out.pair = pair_at(json, "pair");
+    out.why = json.at("why").dump();
+    out.withheld_why = json.at("withheld_why").dump();
     out.withheld = json.at("withheld").get<std::string>();
     out.withheld_reason = json.at("withheld_reason").get<std::string>();
     out.withheld_pair = pair_at(json, "withheld_pair");
@@ -178,7 +191,8 @@ std::string watch_json(const WatchInput& input) {
              {"notes", notes_of(input)},
              {"configuration", input.configuration},
              {"reads_status", input.reads_status},
-             {"guard", guard_json(input)}};
+             {"guard", guard_json(input)},
+             {"why", whys_json(input)}};
     if (input.bus != nullptr) {
         out["bus"] = {{"name", input.bus_name},
                       {"is_open", input.bus_fault.empty()},

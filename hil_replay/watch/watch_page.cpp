@@ -18,6 +18,7 @@ constexpr std::array kOwnParts = {NamedPart{"/", "live.html", "text/html; charse
                                   NamedPart{"/live.css", "live.css", "text/css; charset=utf-8"},
                                   NamedPart{"/closest.js", "closest.js", kScript},
                                   NamedPart{"/machine_view.js", "machine_view.js", kScript},
+                                  NamedPart{"/why.js", "why.js", kScript},
                                   NamedPart{"/live.js", "live.js", kScript}};
 constexpr std::array kLibraries = {
     NamedPart{"/three.js", "three/three.min.js", kScript},

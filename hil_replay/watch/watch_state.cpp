@@ -45,16 +45,22 @@ std::string words_of_stop(const GuardLine& line) {
     return out + (line.pair.empty() ? "" : ": " + line.pair);
 }
 
+/// Empty: the frame has none.
+std::string pair_of_emergency(const WatchInput& input) {
+    const std::optional<Emergency>& emergency = input.bus->emergency;
+    constexpr std::uint8_t kNoPair = 255;
+    const bool has_pair =
+        emergency && emergency->pair != kNoPair && emergency->pair < input.machine.pairs.size();
+    return has_pair ? words_of_pair(input.machine, emergency->pair) : std::string();
+}
+
 std::string words_of_emergency(const WatchInput& input) {
     const std::optional<Emergency>& emergency = input.bus->emergency;
     if (!emergency) {
         return "STOP";
     }
-    constexpr std::uint8_t kNoPair = 255;
-    const bool has_pair =
-        emergency->pair != kNoPair && emergency->pair < input.machine.pairs.size();
-    return fmt::format("STOP: {}{}", to_text(emergency->code),
-                       has_pair ? ": " + words_of_pair(input.machine, emergency->pair) : "");
+    const std::string pair = pair_of_emergency(input);
+    return fmt::format("STOP: {}{}", to_text(emergency->code), pair.empty() ? "" : ": " + pair);
 }
 
 WatchHeadline headline_of_line(const WatchInput& input) {
@@ -110,6 +116,37 @@ WatchHeadline headline_of(const WatchInput& input) {
         "unreachable",
         heard_us == kNeverSeen ? "Guard not reachable" : "Guard not reachable any more",
         heard_us == kNeverSeen ? std::nullopt : std::optional((input.now_us - heard_us) / 1000)};
+}
+
+std::vector<WatchWhy> whys_of(const WatchInput& input) {
+    std::vector<WatchWhy> out;
+    const auto add = [&out](const char* of, const std::string& pair, const std::string& why) {
+        const bool is_known = !why.empty() && why != "null";
+        if (!pair.empty()) {
+            out.push_back({of, pair, is_known ? why : "", is_known ? "" : "not known"});
+        }
+    };
+    if (has_status(input)) {
+        const GuardLine& line = *input.status;
+        if (line.phase == "stopped") {
+            add("stop", line.pair, line.why);
+        }
+        if (line.withheld == "not proven") {
+            add("permit withheld", line.withheld_pair, line.withheld_why);
+        }
+        return out;
+    }
+    const std::string kind = headline_of(input).kind;
+    const bool is_stopped = kind == "stopped";
+    const bool is_withheld =
+        kind == "selftest" || (kind == "armed" && input.bus->permit_end_us <= input.now_us);
+    const std::string words = input.reads_status ? "not known: the status socket is not reachable"
+                                                 : "not known: the status socket is not read";
+    if (is_stopped || is_withheld) {
+        const std::string pair = is_stopped ? pair_of_emergency(input) : std::string();
+        out.push_back({is_stopped ? "stop" : "permit withheld", pair, "", words});
+    }
+    return out;
 }
 
 std::vector<std::string> notes_of(const WatchInput& input) {

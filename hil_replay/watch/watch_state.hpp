@@ -23,6 +23,7 @@ inline constexpr std::int64_t kStatusEveryUs = 200'000;
 struct GuardLine {
     std::string phase, cause, reason, withheld, withheld_reason;  // names; "none", "nothing"
     std::string pair, withheld_pair;                              // "a - b"; empty: none
+    std::string why, withheld_why;  // JSON, as the line has them; empty, "null": not known
     std::string bus, machine, configuration, version, mode;
     bool has_view = false;  // the keys of a guard whose bus thread turns
     bool stands = false, is_confirmed = false;
@@ -58,6 +59,16 @@ struct WatchHeadline {
 
 /// What a person has to know besides: machine files that differ, a bus that is down, garbage.
 [[nodiscard]] std::vector<std::string> notes_of(const WatchInput& input);
+
+/// What the page explains by distances: a stop, or a permit withheld.
+struct WatchWhy {
+    std::string of;         // "stop", "permit withheld"
+    std::string pair;       // empty: not known
+    std::string distances;  // JSON, as the line has it; empty: not known
+    std::string words;      // why not; empty: it is
+};
+/// None where nothing is withheld, or where it is not about a pair.
+[[nodiscard]] std::vector<WatchWhy> whys_of(const WatchInput& input);
 
 /// In ASCII, one line.
 [[nodiscard]] std::string watch_json(const WatchInput& input);

@@ -4,7 +4,7 @@
 recorded bus: the machine moves as its samples say, each state of the guard is in words, a stop is
 announced, it fits three sizes of screen, its texts can be read, the keyboard reaches all of it, and
 it says so when the guard or the server is gone. With a file as third argument the first screen is
-stored there as a picture."""
+stored there as a picture, and with one as fourth that of a stop."""
 import json
 import pathlib
 import re
@@ -23,6 +23,13 @@ from report_test import SIZES, TEXT_CONTRAST, run, text_contrasts
 PROGRAM = "T1 M6\nG0 X5\n" + "G1 F2000 X40 Y30\nG1 X-40 Y-20 Z-60\n" * 8 + "M2\n"
 SECONDS = 45.0  # of the trace: longer than a busy machine takes to come to its end
 LEAST_RATE = 5  # events a second that a busy machine still shows
+
+# Of a stop: the guard's keys, with figures that are all different.
+WHY = {"needed_mm": 7.013, "available_mm": 6.5, "within_mm": 50.0, "to_standstill_mm": None,
+       "until_braking_mm": 1.25, "braking_mm": 3.5, "position_error_mm": 0.0125,
+       "speed_uncertainty_mm": 0.25, "margin_mm": 2.0, "arithmetic_mm": 0.0005,
+       "list_full": False, "jog": False, "tool": 1,
+       "open": {"needed_mm": 3.0, "available_mm": 2.75}}
 
 faults = []
 
@@ -70,7 +77,7 @@ def line_of(configuration):
     return {"axguardd": "0.1.0", "bus": "can0", "machine": "paper-trunnion",
             "configuration_sha256": configuration, "mode": "stoppable", "age_ms": 1,
             "phase": "ready", "phase_ms": 1200, "cause": "none", "reason": "none", "pair": None,
-            "withheld": "nothing", "withheld_reason": "none", "withheld_pair": None, "stands": True,
+            "why": None, "withheld_why": None, "withheld": "nothing", "withheld_reason": "none", "withheld_pair": None, "stands": True,
             "confirmed": False, "session": True, "hashes": "required",
             **{name: 7 for name in counters}}
 
@@ -169,6 +176,37 @@ def check_states(browser, guard):
              "a guard that has ended is not said")
 
 
+def check_why(browser, guard, picture):
+    """Needed and available distance with their parts, hidden while nothing is withheld."""
+    section = browser.find_element("id", "why_section")
+    check(not section.is_displayed(), "a reason is shown while nothing is withheld")
+    guard.say(phase="stopped", cause="verdict", reason="predicted", pair=["cutter", "c"], why=WHY)
+    wait_for(browser, "document.getElementById('why').children.length > 6", "no reason of the stop")
+    words = browser.find_element("id", "why").text
+    for part in ("cutter - c, tool 1", "7.0130 mm", "6.5000 mm", "motion until braking", "braking",
+                 "uncertainty of position", "uncertainty of speed", "margin to keep", "arithmetic",
+                 "needs 3.0000 mm and has 2.7500 mm"):
+        check(part in words, f"why: {part!r} is not in {words!r}")
+    check("standstill" not in words and "null" not in words, f"why: {words!r}")
+    if picture:
+        resize(browser, 1200, 800)
+        browser.save_screenshot(picture)
+    check_sizes(browser)
+    guard.say(phase="selftest", cause="none", reason="none", pair=None, why=None,
+              withheld="not proven", withheld_reason="predicted", withheld_pair=["cutter", "c"],
+              withheld_why={**WHY, "available_mm": 50.0, "list_full": True})
+    wait_for(browser, "document.getElementById('why').textContent.includes('permit withheld')",
+             "no reason of the withheld permit")
+    words = browser.find_element("id", "why").text
+    check("at least 50.0000 mm" in words and "a list was full" in words, f"why: {words!r}")
+    guard.say(withheld_why=None)
+    wait_for(browser, "document.getElementById('why').textContent.includes('not known')",
+             "a distance that is not known is not said to be")
+    check(" mm" not in browser.find_element("id", "why").text, "a figure that is not known")
+    guard.say(withheld="nothing", withheld_reason="none", withheld_pair=None, phase="armed")
+    wait_for(browser, "document.getElementById('why_section').hidden", "the reason stays")
+
+
 def check_sizes(browser):
     for width, height in SIZES:
         resize(browser, width, height)
@@ -253,6 +291,7 @@ def main():
             check_sizes(browser)
             check_keys(browser)
             rate = check_rate(browser)
+            check_why(browser, guard, sys.argv[4] if len(sys.argv) > 4 else None)
             check_states(browser, guard)
             check_texts(browser)
             errors = [line["message"] for line in browser.get_log("browser")

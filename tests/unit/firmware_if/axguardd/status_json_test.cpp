@@ -34,7 +34,7 @@ class StatusLineTest : public testing::Test {
     std::string text(const LiveView* shown) const {
         std::array<char, kStatusLineBytesMax> room{};
         const StatusLine line(machine, "can0", "stoppable", std::string(64, 'a'));
-        return {room.data(), line.write(shown, kNowUs, room)};
+        return {room.data(), line.write(shown, why, kNowUs, room)};
     }
     nlohmann::json json() const { return nlohmann::json::parse(text(&view)); }
     StatusWords words() const {
@@ -49,8 +49,25 @@ class StatusLineTest : public testing::Test {
         view.pair = 0;
     }
 
+    /// With every part another figure.
+    static PairWhy a_why() {
+        PairWhy out;
+        out.tool = 0;
+        out.distances.need = {.margin_mm = 2,
+                              .until_braking_mm = 1.25,
+                              .braking_mm = 3.5,
+                              .position_error_mm = 0.0125,
+                              .speed_uncertainty_mm = 0.25,
+                              .arithmetic_mm = 0.0005};
+        out.distances.available_mm = 6.5;
+        out.distances.within_mm = 50;
+        out.distances.open = OpenPart{.needed_mm = 3, .available_mm = 2.75};
+        return out;
+    }
+
     Machine machine = motion_test_machine();
     LiveView view;
+    GuardWhy why;
 };
 
 TEST_F(StatusLineTest, SaysWhatTheGuardIsAndWhere) {
@@ -104,6 +121,73 @@ TEST_F(StatusLineTest, OfAWithheldPermitItNamesWhatIsNotProven) {
         << words().text;
 }
 
+TEST_F(StatusLineTest, DistancesAreThereWhereTheyAreKnown) {
+    const auto none = json();
+    for (const char* const key : {"why", "withheld_why"}) {
+        ASSERT_TRUE(none.contains(key));
+        EXPECT_TRUE(none[key].is_null()) << key;
+    }
+    why.stop = a_why();
+    EXPECT_TRUE(json()["why"].is_null()) << "it is not stopped";
+    stop(GuardFault::verdict, StopReason::predicted);
+    const auto has = json()["why"];
+    EXPECT_EQ(has["needed_mm"], 7.013);
+    EXPECT_EQ(has["available_mm"], 6.5);
+    EXPECT_EQ(has["within_mm"], 50);
+    EXPECT_EQ(has["until_braking_mm"], 1.25);
+    EXPECT_EQ(has["braking_mm"], 3.5);
+    EXPECT_EQ(has["position_error_mm"], 0.0125);
+    EXPECT_EQ(has["speed_uncertainty_mm"], 0.25);
+    EXPECT_EQ(has["margin_mm"], 2);
+    EXPECT_EQ(has["arithmetic_mm"], 0.0005);
+    EXPECT_TRUE(has["to_standstill_mm"].is_null());
+    EXPECT_EQ(has["jog"], false);
+    EXPECT_EQ(has["list_full"], false);
+    EXPECT_EQ(has["tool"], machine.tools[0].number);
+    EXPECT_EQ(has["open"], (nlohmann::json{{"needed_mm", 3.0}, {"available_mm", 2.75}}));
+    EXPECT_TRUE(json()["withheld_why"].is_null());
+    why.stop->is_whole = why.stop->is_jog = true;
+    why.stop->tool = kNoIndex;
+    why.stop->distances.open.reset();
+    const auto whole = json()["why"];
+    EXPECT_EQ(whole["to_standstill_mm"], 1.25);
+    for (const char* const key : {"until_braking_mm", "braking_mm", "position_error_mm",
+                                  "speed_uncertainty_mm", "tool", "open"}) {
+        EXPECT_TRUE(whole[key].is_null()) << key;
+    }
+    EXPECT_EQ(whole["jog"], true);
+}
+
+TEST_F(StatusLineTest, DistancesInWordsAreThoseOfAReplay) {
+    stop(GuardFault::verdict, StopReason::predicted);
+    EXPECT_EQ(words().text.find("needs"), std::string::npos) << "not known";
+    why.stop = a_why();
+    EXPECT_NE(words().text.find(
+                  "  needs 7.0130 mm and has 6.5000 mm, tool 1\n"
+                  "    motion until braking 1.2500, braking 3.5000, uncertainty of position "
+                  "0.0125, of speed 0.2500, margin 2, arithmetic 0.0005 mm\n"
+                  "    the first part left open needs 3.0000 mm and has 2.7500 mm\n"),
+              std::string::npos)
+        << words().text;
+    why.stop->distances.available_mm = 50;
+    EXPECT_NE(words().text.find("has at least 50.0000 mm"), std::string::npos);
+    EXPECT_EQ(words().text.find("was full"), std::string::npos);
+    why.stop->is_list_full = true;
+    EXPECT_NE(words().text.find("    a list of the engine was full (cycle: in the machine file)\n"),
+              std::string::npos);
+    EXPECT_EQ(json()["why"]["list_full"], true);
+    why.stop->distances.available_mm = 0;
+    EXPECT_NE(words().text.find("and has none"), std::string::npos);
+    view.phase = GuardPhase::selftest;
+    view.withheld = {WithheldPermit::Why::not_proven, StopReason::predicted, 0};
+    why.withheld = a_why();
+    why.withheld->is_jog = why.withheld->is_whole = true;
+    EXPECT_NE(words().text.find("predicted: cutter - plate\n  needs 7.0130 mm"), std::string::npos)
+        << words().text;
+    EXPECT_NE(words().text.find("motion to standstill 1.2500, clearance to keep in this jog 2,"),
+              std::string::npos);
+}
+
 TEST_F(StatusLineTest, BeforeTheFirstViewItSaysInit) {
     const auto said = nlohmann::json::parse(text(nullptr));
     EXPECT_EQ(said["phase"], "init");
@@ -132,6 +216,12 @@ TEST_F(StatusLineTest, TheLongestLineFits) {
     stop(GuardFault::second_guard, StopReason::left_limits);
     view.withheld = {WithheldPermit::Why::not_proven, StopReason::left_limits, 0};
     view.time_us = std::numeric_limits<std::int64_t>::min() / 2;
+    why.stop = why.withheld = a_why();
+    for (std::optional<PairWhy>* const most : {&why.stop, &why.withheld}) {
+        (*most)->distances.need = {1e12, 1e12, 1e12, 1e12, 1e12, 1e12};
+        (*most)->distances.available_mm = (*most)->distances.within_mm = kMarginMmMax;
+        (*most)->distances.open = OpenPart{1e12, kMarginMmMax};
+    }
     LiveCounters& counters = view.counters;
     for (std::uint64_t* const count :
          {&counters.snapshots, &counters.permits, &counters.slow, &counters.stops, &counters.late,
@@ -223,6 +313,17 @@ TEST_F(StatusLineTest, AKeyThatIsMissingOrOfAnotherTypeIsNoStatus) {
         nlohmann::json odd = whole;
         odd[key] = value;
         EXPECT_FALSE(words_of_status(odd.dump())) << key << ' ' << value;
+    }
+    stop(GuardFault::verdict, StopReason::predicted);
+    why.stop = a_why();
+    const nlohmann::json with_why = json();
+    ASSERT_TRUE(words_of_status(with_why.dump()));
+    for (const auto& [key, value] : with_why["why"].items()) {
+        nlohmann::json odd = with_why;
+        odd["why"].erase(key);
+        EXPECT_FALSE(words_of_status(odd.dump())) << "without " << key;
+        odd["why"][key] = "\x1b[2J";
+        EXPECT_FALSE(words_of_status(odd.dump())) << key;
     }
     nlohmann::json newer = whole;
     newer["a key that is new"] = 1;

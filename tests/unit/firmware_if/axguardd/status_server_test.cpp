@@ -39,7 +39,8 @@ class StatusServer : public testing::Test {
         EXPECT_EQ(fault, "");
         EXPECT_TRUE(socket.listen());
         bus_thread = std::thread([this] { play_bus(); });
-        status_thread = std::thread([this] { serve_status(socket, line, exchange, is_ending); });
+        status_thread =
+            std::thread([this] { serve_status(socket, line, exchange, nullptr, is_ending); });
     }
     ~StatusServer() override {
         is_ending.store(true);

@@ -29,8 +29,9 @@ std::string line_of(const std::string& phase, const std::string& cause) {
     return "{\"axguardd\":\"9\",\"bus\":\"can0\",\"machine\":\"m\",\"configuration_sha256\":\"a\","
            "\"mode\":\"contact\",\"age_ms\":3,\"phase\":\"" +
            phase + "\",\"phase_ms\":40,\"cause\":\"" + cause +
-           "\",\"reason\":\"none\",\"pair\":null,\"withheld\":\"nothing\","
-           "\"withheld_reason\":\"none\",\"withheld_pair\":null,\"stands\":true,"
+           "\",\"reason\":\"none\",\"pair\":null,\"why\":null,\"withheld\":\"nothing\","
+           "\"withheld_reason\":\"none\",\"withheld_pair\":null,\"withheld_why\":null,\"stands\":"
+           "true,"
            "\"confirmed\":false,\"session\":true,\"hashes\":\"required\",\"pictures\":5,"
            "\"permits\":0,\"permits_slow\":0,\"stop_frames\":0,\"late\":0,\"refused\":0,"
            "\"send_faults\":0,\"samples_lost\":0,\"frames_dropped\":0,\"operator_acts\":0,"

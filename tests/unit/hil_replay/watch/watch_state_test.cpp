@@ -20,7 +20,7 @@ class WatchState : public testing::Test {
     [[nodiscard]] GuardLine line_of(const LiveView& live, const std::string& hash = kHash) const {
         const StatusLine status(machine, "can0", "stoppable", hash);
         std::array<char, kStatusLineBytesMax> text{};
-        const std::size_t size = status.write(&live, live.time_us, text);
+        const std::size_t size = status.write(&live, why, live.time_us, text);
         const auto line = read_guard_line({text.data(), size});
         EXPECT_TRUE(line);
         return line.value_or(GuardLine{});
@@ -49,6 +49,7 @@ class WatchState : public testing::Test {
     }
 
     Machine machine = test::watched_machine();
+    GuardWhy why;
     BusView view{machine, {}};
     WatchInput input{.machine = machine, .configuration = kHash};
 };
@@ -91,6 +92,41 @@ TEST_F(WatchState, AStopHasCauseReasonAndPair) {
     EXPECT_EQ(headline_of(input).since_ms, 4000);
 }
 
+TEST_F(WatchState, DistancesOfAStopAndOfAWithheldPermitArePassedOn) {
+    LiveView live;
+    live.phase = GuardPhase::armed;
+    live.withheld = {.why = WithheldPermit::Why::nothing};
+    set_line(live);
+    EXPECT_TRUE(json()["why"].empty());
+    live.withheld = {
+        .why = WithheldPermit::Why::not_proven, .reason = StopReason::predicted, .pair = 1};
+    set_line(live);
+    auto said = json()["why"];
+    ASSERT_EQ(said.size(), 1U);
+    EXPECT_EQ(said[0]["of"], "permit withheld");
+    EXPECT_EQ(said[0]["pair"], "head - plate");
+    EXPECT_TRUE(said[0]["distances"].is_null());
+    EXPECT_EQ(said[0]["words"], "not known");
+    live.phase = GuardPhase::stopped;
+    live.cause = GuardFault::verdict;
+    live.reason = StopReason::predicted;
+    live.pair = 0;
+    why.stop = PairWhy{};
+    why.stop->distances.need = {.margin_mm = 2, .braking_mm = 3.5};
+    why.stop->distances.within_mm = 50;
+    why.stop->distances.available_mm = 4.25;
+    set_line(live);
+    said = json()["why"];
+    ASSERT_EQ(said.size(), 2U);
+    EXPECT_EQ(said[0]["of"], "stop");
+    EXPECT_EQ(said[0]["pair"], "cutter - plate");
+    EXPECT_EQ(said[0]["distances"]["needed_mm"], 5.5);
+    EXPECT_EQ(said[0]["distances"]["available_mm"], 4.25);
+    EXPECT_EQ(said[0]["distances"]["braking_mm"], 3.5);
+    EXPECT_EQ(said[0]["words"], "");
+    EXPECT_EQ(said[1]["of"], "permit withheld");
+}
+
 TEST_F(WatchState, AnotherMachineFileIsSaid) {
     LiveView live;
     live.phase = GuardPhase::armed;
@@ -115,6 +151,7 @@ TEST_F(WatchState, TheBusAloneShowsAnArmedGuard) {
     hear(300);
     EXPECT_EQ(headline_of(input).kind, "armed");
     const auto said = json();
+    EXPECT_TRUE(said["why"].empty()) << "nothing is withheld";
     EXPECT_EQ(said["permit"]["word"], "slow");
     EXPECT_EQ(said["permit"]["in_force"], true);
     EXPECT_EQ(said["permit"]["samples"], 3);
@@ -126,6 +163,7 @@ TEST_F(WatchState, TheBusAloneShowsAnArmedGuard) {
     EXPECT_EQ(said["axes"]["mode"], "moving");
     input.now_us += 3000;
     EXPECT_EQ(json()["permit"]["in_force"], false);
+    EXPECT_EQ(json()["why"].size(), headline_of(input).kind == "armed" ? 1U : 0U);
 }
 
 TEST_F(WatchState, ASilentGuardIsNotReachableAndItsPermitNotInForce) {
@@ -147,6 +185,11 @@ TEST_F(WatchState, TheBusAloneShowsAStop) {
     view.on_frame(encode_guard_heartbeat(machine.can, GuardHeartbeat::tripped, input.now_us));
     EXPECT_EQ(headline_of(input).kind, "stopped");
     EXPECT_EQ(headline_of(input).text, "STOP: predicted_collision: cutter - plate");
+    const auto said = json()["why"];
+    ASSERT_EQ(said.size(), 1U);
+    EXPECT_EQ(said[0]["pair"], "cutter - plate");
+    EXPECT_TRUE(said[0]["distances"].is_null());
+    EXPECT_EQ(said[0]["words"], "not known: the status socket is not read");
 }
 
 TEST_F(WatchState, ALineOfAnotherVersionOrOfGarbageIsNone) {
