@@ -77,7 +77,8 @@ def line_of(configuration):
     return {"axguardd": "0.1.0", "bus": "can0", "machine": "paper-trunnion",
             "configuration_sha256": configuration, "mode": "stoppable", "age_ms": 1,
             "phase": "ready", "phase_ms": 1200, "cause": "none", "reason": "none", "pair": None,
-            "why": None, "withheld_why": None, "withheld": "nothing", "withheld_reason": "none", "withheld_pair": None, "stands": True,
+            "why": None, "withheld": "nothing", "withheld_reason": "none", "withheld_pair": None,
+            "withheld_why": None, "stands": True,
             "confirmed": False, "session": True, "hashes": "required",
             **{name: 7 for name in counters}}
 

@@ -21,8 +21,22 @@ TRACE = os.environ.get("AXG_VM_TRACE", "collide-{}.log")  # in build/can_vm
 REASONS = {"contact": ("contact", 450), "stoppable": ("predicted", 350)}
 
 
-def judge_black_box(report, reason):
-    """The dump that the guard left tells the same stop."""
+STATUS = "/run/replay.status"
+FIGURES = ("needed_mm", "available_mm", "margin_mm")
+
+
+def why_of_the_guard():
+    """What it shows of its stop while it runs."""
+    run = subprocess.run([BUILD / "axguardd", "status", "--socket", STATUS, "--json"],
+                         capture_output=True, text=True)
+    expect(run.returncode == 10, run.stdout, run.stderr)
+    line = json.loads(run.stdout)
+    expect(line["phase"] == "stopped" and line["why"], line)
+    return line["why"]
+
+
+def judge_black_box(report, reason, why):
+    """The dump that the guard left tells the same stop, and the same distances."""
     program = [BUILD / "axguard", "replay", f"/run/machine-{sys.argv[1]}.yaml", "--mesh-root",
                SOURCE / "config/machines", report["black_box"], "--json=/run/box.json"]
     run = subprocess.run(program, capture_output=True, text=True)
@@ -34,6 +48,9 @@ def judge_black_box(report, reason):
     # From its start to the stop and after it, byte for byte in the same order.
     expect(box["sent"] and box["sent"]["different"] == 0, box)
     expect(box["sent"]["same"] == box["frames_sent"] + box["frames_refused"] > 500, box)
+    expect(all(abs(box["why"][key] - why[key]) < 1e-4 for key in FIGURES), box["why"], why)
+    expect(box["why"].get("open") is None or
+           abs(box["why"]["open"]["needed_mm"] - why["open"]["needed_mm"]) < 1e-4, box["why"], why)
     print("black box:", box["verdicts"], "frames sent:", box["sent"],
           "from a frame to its permit, us:", box["permit_us"], "to the stop:", box["stop_us"],
           flush=True)
@@ -70,13 +87,14 @@ def stop_at_the_collision(format_, mode):
     with open(dump, "wb") as file:
         candump = subprocess.Popen(["candump", "-L", "-r", "16000000", "vcan0"], stdout=file)
     RUNNING.append(candump)
-    guard = Guard(format_=format_, mode=mode)
+    guard = Guard("--status-socket", STATUS, format_=format_, mode=mode)
     guard.wait_for("selftest")
     board = Board(TRACE.format(format_))
     guard.arm()
     guard.wait_for("stopped", timeout_s=30)
     guard.check_busy()
     time.sleep(0.1)
+    why = why_of_the_guard()
     board.end()
     code, report = guard.end()
     expect(code == 10 and report["cause"] == "verdict" and report["reason"] == reason,
@@ -101,7 +119,7 @@ def stop_at_the_collision(format_, mode):
            "one word stop after the stop", frames[first:first + 20])
     expect(ids[first:].count(EMERGENCY) == 1, ids[first:])
     expect(ids.count(HEARTBEAT) > 100, ids.count(HEARTBEAT))
-    judge_black_box(report, reason)
+    judge_black_box(report, reason, why)
     candump.terminate()
     candump.wait()
     dumped = [line.split()[2] for line in dump.read_text().splitlines()]
