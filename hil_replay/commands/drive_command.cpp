@@ -161,7 +161,8 @@ bool write_page(const DriveArguments& arguments, const LoadedMachine& loaded,
                        loaded.machine.deadline_us,
                        arguments.gcode.program,
                        printed_text([&report](std::FILE* stream) { print_drive(report, stream); }),
-                       describe_stops(report)};
+                       describe_stops(report),
+                       &report.lines};
     return write_run_page(arguments.report, page, stderr);
 }
 
