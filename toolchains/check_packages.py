@@ -28,11 +28,13 @@ LIBRARIES = {"libc.so.6": "libc6", "libm.so.6": "libc6", "ld-linux-aarch64.so.1"
              "libcudart.so.12": "cuda-cudart-12-6",
              "libfmt.so.9": "libfmt9", "libmd.so.0": "libmd0",
              "libmeshoptimizer.so.2d": "libmeshoptimizer2d",
-             "libmicrohttpd.so.12": "libmicrohttpd12"}
+             "libmicrohttpd.so.12": "libmicrohttpd12", "liblinuxcnchal.so.0": "linuxcnc-uspace"}
 DEV_OF = {"libc6": "libc6-dev", "libgcc-s1": "libgcc-12-dev", "libstdc++6": "libstdc++-12-dev",
           "zlib1g": "zlib1g-dev", "libgmp10": "libgmp-dev", "libgmpxx4ldbl": "libgmp-dev",
           "libyaml-cpp0.7": "libyaml-cpp-dev", "libfmt9": "libfmt-dev", "libmd0": "libmd-dev",
-          "libmeshoptimizer2d": "libmeshoptimizer-dev", "libmicrohttpd12": "libmicrohttpd-dev"}
+          "libmeshoptimizer2d": "libmeshoptimizer-dev", "libmicrohttpd12": "libmicrohttpd-dev",
+          "linuxcnc-uspace": "linuxcnc-uspace-dev"}
+LINUXCNC = {"axguard-hal", "axguard_stop.so"}  # the engine is in libaxguard
 PACKAGES = {"axguard", "axguardd", "axguard-board-dev", "axguard-doc", "axguard-lab", "libaxguard0",
             "libaxguard-dev"}
 
@@ -67,12 +69,14 @@ def kernels_in(path):
 
 
 def missing_hardening(path, is_cross):
-    """What AXG_HARDENING (toolchains/flags.cmake) leaves in a file, and this one lacks."""
+    """What AXG_HARDENING (toolchains/flags.cmake) leaves in a file, and this one lacks. A small one
+    has a mark at each of its few functions, and may call nothing that can be fortified."""
     dynamic = output_of("readelf", "-dW", path)
     segments = output_of("readelf", "-lW", path)
     symbols = set(re.findall(r" UND (\w+)", output_of("readelf", "--dyn-syms", "-W", path)))
     flags = " ".join(re.findall(r"\((?:FLAGS|FLAGS_1)\)\s+(.*)", dynamic))
-    is_library = "(SONAME)" in dynamic
+    is_library = "(SONAME)" in dynamic or path.suffix == ".so"  # a module has no name
+    is_small = path.name in LINUXCNC
     stack = re.search(r"GNU_STACK\s.*", segments)
     has = {
         "position-independent code": is_library or "PIE" in flags.split(),
@@ -80,12 +84,12 @@ def missing_hardening(path, is_cross):
         "BIND_NOW": "NOW" in flags.split(),
         "a stack that does not execute": stack is not None and "RWE" not in stack.group(),
         "stack protectors": "__stack_chk_fail" in symbols,
-        "fortified calls": any(re.fullmatch(r"__\w+_chk", name) for name in symbols),
+        "fortified calls": is_small or any(re.fullmatch(r"__\w+_chk", name) for name in symbols),
     }
     # The property of the whole file needs start files of the C library that have it, and those of
     # Debian 12 do not; so the marks at the functions are counted: paciasp, endbr64.
     mark = b"\x3f\x23\x03\xd5" if is_cross else b"\xf3\x0f\x1e\xfa"
-    has["marks of control flow"] = path.read_bytes().count(mark) > 100
+    has["marks of control flow"] = path.read_bytes().count(mark) > (3 if is_small else 100)
     return [name for name, holds in has.items() if not holds]
 
 
@@ -93,7 +97,7 @@ def unhardened_sources(build):
     """Sources of the packaged files that were compiled without a flag which leaves no trace."""
     commands = json.loads((build / "compile_commands.json").read_text())
     return sorted(entry["file"] for entry in commands
-                  if entry["file"].endswith(".cpp") and "/tests/" not in entry["file"] and
+                  if entry["file"].endswith((".cpp", ".c")) and "/tests/" not in entry["file"] and
                   not {"-fstack-clash-protection", "-fstack-protector-strong"} <=
                   set(entry["command"].split()))
 
@@ -134,7 +138,8 @@ def check_program(checks, path, build, depends, listed, own_files):
     kernels = kernels_in(path)
     # Machine code for exactly the devices of the preset, and nothing that a board would compile.
     wanted = {f"sm_{number}" for number in re.findall(r"(\d+)-real", architectures)}
-    checks.expect(set(kernels) == (wanted if "axguard" in name else set()),
+    has_engine = "axguard" in name and name not in LINUXCNC
+    checks.expect(set(kernels) == (wanted if has_engine else set()),
                   f"{name}: kernels for {sorted(set(kernels))}, wanted {sorted(wanted)}")
     print(f"  {name}: kernels: " + (", ".join(
         f"{arch} x {kernels.count(arch)}" for arch in sorted(set(kernels))) or "none"))
@@ -194,7 +199,9 @@ def main():
         opened = [check_package(checks, package, build, listed, pathlib.Path(temporary))
                   for package in packages]
         names = {name for _, name, _ in opened}
-        checks.expect(names == PACKAGES, f"packages: {sorted(names)}")
+        is_amd64 = any(package.stem.endswith("_amd64") for package in packages)
+        wanted = PACKAGES | ({"axguard-linuxcnc"} if is_amd64 else set())  # debian/control
+        checks.expect(names == wanted, f"packages: {sorted(names)}")
         own = {path.name for into, _, _ in opened for path in into.rglob("*.so*")}
         programs = 0
         for into, name, depends in opened:

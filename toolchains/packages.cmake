@@ -107,6 +107,9 @@ install(DIRECTORY ${AXG_PAGES}/ DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/axguard
         COMPONENT axguard-doc)
 add_custom_target(packaged DEPENDS axguard axguard-lab axguardd axg_c axg_firmware_if_board
   ${AXG_ARCHIVE} ${pages})
+if(TARGET axguard-hal)
+  add_dependencies(packaged axguard-hal axguard_stop)
+endif()
 list(JOIN outside " " AXG_LIBRARIES_PRIVATE)
 list(TRANSFORM outside REPLACE "^-L.*libdir}" "-L\${AXGUARD_LIBRARIES}" OUTPUT_VARIABLE linked)
 list(JOIN linked ";" AXG_LIBRARIES_CMAKE)
@@ -121,7 +124,8 @@ install(FILES ${PROJECT_BINARY_DIR}/packaged/axguardConfig.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/axguard COMPONENT libaxguard-dev)
 
 # make_sbom.py writes these when everything is built: what the programs contain, and its licences.
-foreach(component axguard axguardd axguard-lab libaxguard0 libaxguard-dev axguard-board-dev)
+foreach(component axguard axguardd axguard-lab axguard-linuxcnc libaxguard0 libaxguard-dev
+        axguard-board-dev)
   install(FILES ${PROJECT_BINARY_DIR}/packaged/sbom.spdx.json
           ${PROJECT_BINARY_DIR}/packaged/licences
           DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${component} COMPONENT ${component} OPTIONAL)

@@ -26,8 +26,14 @@ while [[ $# -gt 0 ]]; do
 done
 shopt -s nullglob
 packages=("$build"/packages/*.deb)
-if [[ ${#packages[@]} -ne 7 ]]; then
-    echo "fresh_packages.sh: ${#packages[@]} packages in $build/packages, wanted 7;" \
+names='axguard axguardd axguard-board-dev axguard-doc axguard-lab libaxguard0 libaxguard-dev'
+wanted=7
+if [[ ${packages[*]} == *_amd64.deb* ]]; then # debian/control
+    names+=' axguard-linuxcnc'
+    wanted=8
+fi
+if [[ ${#packages[@]} -ne $wanted ]]; then
+    echo "fresh_packages.sh: ${#packages[@]} packages in $build/packages, wanted $wanted;" \
         "toolchains/build_packages.sh makes them" >&2
     exit 2
 fi
@@ -99,7 +105,6 @@ timed 'the example' inside 'bash /opt/build_example.sh'
 tail -n 3 "$log"
 
 # The configuration stays until it is purged.
-names='axguard axguardd axguard-board-dev axguard-doc axguard-lab libaxguard0 libaxguard-dev'
 left="find / -xdev -name '*axguard*' -not -path '/opt/*' -not -path '/var/lib/dpkg/*' \
     -not -path '/var/cache/*' -not -path '/var/log/*'"
 timed 'remove' inside "apt-get remove -yq $names && test -s /etc/axguard/can0.env &&
