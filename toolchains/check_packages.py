@@ -97,9 +97,18 @@ def unhardened_sources(build):
     """Sources of the packaged files that were compiled without a flag which leaves no trace."""
     commands = json.loads((build / "compile_commands.json").read_text())
     return sorted(entry["file"] for entry in commands
-                  if entry["file"].endswith((".cpp", ".c")) and "/tests/" not in entry["file"] and
+                  if entry["file"].endswith((".cpp", ".c")) and
+                  not re.search("/tests/|/example/", entry["file"]) and
                   not {"-fstack-clash-protection", "-fstack-protector-strong"} <=
                   set(entry["command"].split()))
+
+
+def open_symbols(archive, is_cross):
+    """Functions of the project that its archive wants and does not have: nobody could link it."""
+    tool = "aarch64-linux-gnu-nm" if is_cross else "nm"
+    def names(option):
+        return set(re.findall(r"\b(_ZNK?3axg\w+)", output_of(tool, option, "-P", archive)))
+    return sorted(names("--undefined-only") - names("--defined-only"))
 
 
 class Checks:
@@ -214,6 +223,11 @@ def main():
                         check_program(checks, path, build, depends, listed, own)
         checks.expect(programs >= 4, f"{programs} programs and libraries, wanted axguard, "
                       "axguard-lab, axguardd and libaxguard")
+        for archive in (path for into, _, _ in opened for path in into.rglob("libaxguard.a")):
+            names = open_symbols(archive, "jetson" in build.name)
+            checks.expect(not names, f"libaxguard.a: {len(names)} missing, such as {names[:1]}")
+            programs += 1
+        checks.expect(programs >= 5, "no libaxguard.a")
     lintian(checks, packages)
     for fault in checks.faults:
         print(f"FAULT {fault}")

@@ -56,10 +56,7 @@ endif()
 set(AXG_ARCHIVE ${PROJECT_BINARY_DIR}/packaged/libaxguard.a)
 set(inside)
 set(outside -lstdc++ -lm -lpthread -ldl -lrt)
-set(rooms firmware_if_setup firmware_if_guard firmware_if_receiver firmware_if_protocol
-    firmware_if_can config_compiled config_machine config_mesh config_can config_text cuda_bench
-    cuda_engine core_guard core_certificate core_collision core_machine core_mesh core_base)
-list(TRANSFORM rooms PREPEND axg_)
+axg_linked_rooms(rooms ${AXG_GUARD})
 foreach(library ${AXG_GUARD} ${rooms})
   list(APPEND inside $<TARGET_FILE:${library}>)
 endforeach()
