@@ -10,8 +10,6 @@
 namespace axg {
 namespace {
 
-constexpr std::uint32_t kFrame = 0xffffffffU;
-
 struct Word {
     std::string_view text;
     char role;  // an axis; 'T' tool; 'F' fixed
@@ -57,6 +55,29 @@ char role_of(const std::string& stem) {
     return '\0';
 }
 
+/// Where a role stands in the chains: the fixed parts, the table's side from the bottom up, the
+/// head's side.
+int rank_of(char role) noexcept {
+    constexpr std::string_view kOrder = "FYXABCZT";
+    const std::size_t at = kOrder.find(role);
+    return role == '\0' || at == std::string_view::npos ? static_cast<int>(kOrder.size())
+                                                        : static_cast<int>(at);
+}
+
+/// Last one in the chain below `role`, on its side.
+std::uint32_t carrier_of(char role, const std::vector<RoleGuess>& placed) {
+    const bool head_side = role == 'Z' || role == 'T';
+    std::uint32_t carrier = kNoParent;
+    for (std::uint32_t i = 0; i < placed.size(); ++i) {
+        if (placed[i].axis != '\0' && placed[i].is_table_side != head_side) {
+            carrier = i;
+        }
+    }
+    return carrier;
+}
+
+}  // namespace
+
 std::string legal_name(const std::string& stem, const std::vector<RoleGuess>& others) {
     std::string name;
     for (const char c : stem) {
@@ -78,29 +99,6 @@ std::string legal_name(const std::string& stem, const std::vector<RoleGuess>& ot
     }
     return unique;
 }
-
-/// Where a role stands in the chains: the fixed parts, the table's side from the bottom up, the
-/// head's side.
-int rank_of(char role) noexcept {
-    constexpr std::string_view kOrder = "FYXABCZT";
-    const std::size_t at = kOrder.find(role);
-    return role == '\0' || at == std::string_view::npos ? static_cast<int>(kOrder.size())
-                                                        : static_cast<int>(at);
-}
-
-/// Last one in the chain below `role`, on its side.
-std::uint32_t carrier_of(char role, const std::vector<RoleGuess>& placed) {
-    const bool head_side = role == 'Z' || role == 'T';
-    std::uint32_t carrier = kFrame;
-    for (std::uint32_t i = 0; i < placed.size(); ++i) {
-        if (placed[i].axis != '\0' && placed[i].is_table_side != head_side) {
-            carrier = i;
-        }
-    }
-    return carrier;
-}
-
-}  // namespace
 
 std::vector<RoleGuess> guess_roles(const std::vector<std::string>& files) {
     struct Candidate {

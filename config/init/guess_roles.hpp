@@ -7,19 +7,29 @@
 #include <string>
 #include <vector>
 
+#include "core/base/vec3.hpp"
+
 namespace axg {
+
+inline constexpr std::uint32_t kNoParent = 0xffffffffU;  // carried by the machine's frame
 
 struct RoleGuess {
     std::string name;  // of the body: the file's name made a legal and unique one
     char axis = '\0';  // X Y Z A B C; '\0': does not move by itself
     bool is_tool = false;
-    bool is_table_side = false;  // carries the workpiece: commanded motion runs the other way
-    std::uint32_t parent = 0xffffffffU;  // index in the result; all bits set: the machine's frame
-    std::uint32_t file = 0;              // index of the file
+    bool is_table_side = false;        // carries the workpiece: commanded motion runs the other way
+    std::uint32_t parent = kNoParent;  // index in the result
+    std::uint32_t file = 0;            // index of the file
+    // Stated by another file: name, axis, parent, where the mesh is and a point on its axis.
+    bool is_stated = false;
+    Vec3d at_mm{}, pivot_mm{};  // if stated
 };
 
 /// One guess a file, parents first. Table side: Y carries X carries A, B, C. Head side: Z carries
 /// the tool. When no name says what moves, the first file moves along X: some axis there must be.
 [[nodiscard]] std::vector<RoleGuess> guess_roles(const std::vector<std::string>& files);
+
+/// The name of a body: `stem` with what is not legal replaced, and unlike the others.
+[[nodiscard]] std::string legal_name(const std::string& stem, const std::vector<RoleGuess>& others);
 
 }  // namespace axg

@@ -12,7 +12,6 @@ namespace axg {
 namespace {
 
 constexpr std::string_view kAxisOrder = "XYZABCUVW";
-constexpr std::uint32_t kFrame = 0xffffffffU;
 
 // Each starts with a blank line.
 constexpr const char* kHead =
@@ -185,29 +184,34 @@ std::string axes_text(const std::vector<RoleGuess>& roles, const std::vector<Ini
     return text;
 }
 
+/// Behind a value; of one that is stated, nothing.
+std::string guess_of(const RoleGuess& role, const char* why) {
+    return role.is_stated ? std::string() : fmt::format("  {}: {}", kGuessMark, why);
+}
+
 std::string body_text(const RoleGuess& role, const SurveyedMesh& mesh,
                       const std::vector<RoleGuess>& roles) {
     std::string text = fmt::format("  - name: {}\n", role.name);
-    if (role.parent != kFrame) {
-        text += fmt::format("    parent: {}  {}: what carries it\n", roles[role.parent].name,
-                            kGuessMark);
+    if (role.parent != kNoParent) {
+        text += fmt::format("    parent: {}{}\n", roles[role.parent].name,
+                            guess_of(role, "what carries it"));
     }
     if (role.axis != '\0') {
         text += fmt::format(
-            "    axis: {}  {}: from the name of the file\n"
+            "    axis: {}{}\n"
             "    direction: {}  {}: a positive command moves{} this body this way\n",
-            role.axis, kGuessMark, direction_of(role), kGuessMark,
+            role.axis, guess_of(role, "from the name of the file"), direction_of(role), kGuessMark,
             is_rotary(role.axis) ? " (turns, right hand)" : "");
-    } else {
+    } else if (!role.is_stated) {
         text +=
             fmt::format("    {}: fixed to {}; if it moves, add axis and direction\n", kGuessMark,
-                        role.parent == kFrame ? "the machine's frame" : "its parent");
+                        role.parent == kNoParent ? "the machine's frame" : "its parent");
     }
     if (is_rotary(role.axis)) {
         const Vec3d middle = 0.5 * (mesh.min_mm + mesh.max_mm);
         text += fmt::format(
-            "    pivot_mm: {}  {}: the middle of the mesh; a point on the axis it turns about\n",
-            numbers(middle), kGuessMark);
+            "    pivot_mm: {}{}\n", numbers(role.is_stated ? role.pivot_mm : middle),
+            guess_of(role, "the middle of the mesh; a point on the axis it turns about"));
     }
     if (role.is_tool) {
         return text + fmt::format("    tool: true  {}: from the name of the file\n", kGuessMark);
@@ -215,8 +219,8 @@ std::string body_text(const RoleGuess& role, const SurveyedMesh& mesh,
     for (const std::string& note : mesh.notes) {
         text += "    # Repair the mesh or accept: " + escaped(note, 400) + '\n';
     }
-    text += fmt::format("    at_mm: [0, 0, 0]  {}: the mesh is drawn in machine coordinates\n",
-                        kGuessMark);
+    text += fmt::format("    at_mm: {}{}\n", numbers(role.at_mm),
+                        guess_of(role, "the mesh is drawn in machine coordinates"));
     return text + "    mesh: " + mesh_of(mesh) + '\n';
 }
 
@@ -247,7 +251,7 @@ std::string tools_text(const std::vector<SurveyedMesh>& meshes,
 /// The bodies that a moving joint lies between: the first one up each chain that moves, or the
 /// frame.
 std::uint32_t mover_of(const std::vector<RoleGuess>& roles, std::uint32_t body) noexcept {
-    while (body != kFrame && roles[body].axis == '\0') {
+    while (body != kNoParent && roles[body].axis == '\0') {
         body = roles[body].parent;
     }
     return body;
@@ -260,7 +264,7 @@ std::string reason_of(const std::vector<RoleGuess>& roles, std::uint32_t a, std:
     }
     const auto carries = [&](std::uint32_t carrier, std::uint32_t body) {
         const RoleGuess& role = roles[body];
-        const bool by_frame = role.parent == kFrame && mover_of(roles, carrier) == kFrame;
+        const bool by_frame = role.parent == kNoParent && mover_of(roles, carrier) == kNoParent;
         return role.axis != '\0' && (role.parent == carrier || by_frame);
     };
     return carries(a, b) || carries(b, a)

@@ -9,12 +9,14 @@
 #include <memory>
 #include <system_error>
 
+#include "config/init/machine_tree.hpp"
 #include "config/init/write_machine.hpp"
 #include "config/machine/parse_machine.hpp"
 #include "config/text/config_fault.hpp"
 #include "config/text/fault_text.hpp"
 #include "config/text/quote_text.hpp"
 #include "config/text/small_file.hpp"
+#include "config/text/yaml_tree.hpp"
 #include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/whole_file.hpp"
@@ -27,7 +29,7 @@ namespace fs = std::filesystem;
 
 struct InitOptions {
     std::string source;  // a folder, or an INI file
-    std::string folder, out, unit;
+    std::string folder, tree, out, unit;
     bool force = false;
 };
 
@@ -66,6 +68,34 @@ bool read_ini(const std::string& path, std::vector<IniAxis>& axes) {
     }
     axes = ini.axes;
     return ini.faults.empty();
+}
+
+/// Roles of the meshes, from the tree that was passed or from their names; false after a message.
+bool find_roles(const InitOptions& options, const std::vector<std::string>& files, LengthUnit unit,
+                std::vector<RoleGuess>& roles) {
+    if (options.tree.empty()) {
+        roles = guess_roles(files);
+        return true;
+    }
+    std::string text;
+    const std::string shown = escaped(options.tree, 4096);
+    if (const SmallFileFault fault = read_small_file(options.tree, kYamlSizeBytesMax, text);
+        !fault.got.empty() || !fault.wanted.empty()) {
+        fmt::print(stderr, "{}: {}\n", shown, fault_text("invalid file", fault.got, fault.wanted));
+        return false;
+    }
+    MachineTree tree = read_machine_tree(text, shown, files, length_of(unit));
+    for (const ConfigFault& fault : tree.faults) {
+        fmt::print(stderr, "{}\n", to_string(fault));
+    }
+    for (std::uint32_t i = 0; tree.faults.empty() && i < files.size(); ++i) {
+        if (std::none_of(tree.roles.begin(), tree.roles.end(),
+                         [i](const RoleGuess& role) { return role.file == i; })) {
+            fmt::print(stderr, "{}: left out: not in {}\n", escaped(files[i]), shown);
+        }
+    }
+    roles = std::move(tree.roles);
+    return tree.faults.empty();
 }
 
 /// The folder's STL files by name; false after a message.
@@ -166,6 +196,10 @@ int init(InitOptions options, const CommandFiles& names) {
         show_units(options.folder, files);
         return kExitUsage;
     }
+    std::vector<RoleGuess> roles;
+    if (!find_roles(options, files, *unit, roles)) {
+        return kExitInput;
+    }
     const std::string way = way_down(fs::path(options.out).parent_path(), options.folder);
     const bool needs_root = way.empty();
     std::vector<SurveyedMesh> meshes;
@@ -184,7 +218,7 @@ int init(InitOptions options, const CommandFiles& names) {
         return kExitInput;
     }
     const std::string name = escaped(fs::path(options.out).stem().string(), 100);
-    const std::string text = machine_file_text(name, meshes, guess_roles(files), known);
+    const std::string text = machine_file_text(name, meshes, roles, known);
     if (!is_sound(text, options)) {
         return kExitInput;
     }
@@ -195,7 +229,7 @@ int init(InitOptions options, const CommandFiles& names) {
     fmt::print(
         is_stdout(options.out) ? stderr : stdout,
         "{}: {} bodies written. Next: edit the lines marked GUESS, then\n  axguard check {}{}\n",
-        escaped(options.out, 4096), meshes.size(), escaped(options.out, 4096), escaped(root, 4096));
+        escaped(options.out, 4096), roles.size(), escaped(options.out, 4096), escaped(root, 4096));
     return kExitClean;
 }
 
@@ -215,6 +249,8 @@ void add_init(CommandLine& line) {
         .required();
     command.add_option("--meshes", options->folder,
                        "folder of the STL files [default: folder of the INI file]");
+    command.add_input("--tree", options->tree,
+                      "machine.yml of a QtPyVCP screen (source of parents, axes and pivots)");
     command.add_output("-o,--out", options->out, "machine file to write").required();
     command
         .add_option(
