@@ -33,6 +33,12 @@ class TreeReader {
         for (const YamlEntry& entry : node.entries) {
             read_key(entry, path, role, model);
         }
+        const bool has_origin =
+            std::any_of(node.entries.begin(), node.entries.end(),
+                        [](const YamlEntry& entry) { return entry.key == "origin"; });
+        if (role.axis >= 'A' && role.axis <= 'C' && !has_origin) {
+            faults_.add(node.line, path + ".origin", "", "a point on the axis it turns about");
+        }
         if (!find_mesh(node, path, model, role)) {
             return;
         }
@@ -68,8 +74,7 @@ class TreeReader {
                 return;
             }
             if (numbers[3] != 0 || numbers[4] != 0 || numbers[5] != 0) {
-                faults_.add(entry.line, key, shown(value),
-                            "no rotation; turn the mesh itself");
+                faults_.add(entry.line, key, shown(value), "no rotation; turn the mesh itself");
             }
             role.at_mm = length_mm_ * Vec3d{numbers[0], numbers[1], numbers[2]};
         } else if (entry.key == "origin") {

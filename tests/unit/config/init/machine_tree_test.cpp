@@ -88,6 +88,7 @@ TEST(MachineTree, AFaultNamesItsLineAndKey) {
         {"[1, 2, 3, 0, 0, 0]", "[1, 2, 3, 0, 0, 90]", "machine.yml:11: root.child_x.position: "},
         {"[1, 2, 3, 0, 0, 0]", "[1, 2, 3]", "machine.yml:11: root.child_x.position: "},
         {"[0, 0, -18]", "[0, 0, .nan]", "machine.yml:16: root.child_x.child_plate.origin"},
+        {"      origin: [0, 0, -18]\n", "", "root.child_x.child_plate.origin: "},
         {"root:", "machine:", "machine.yml:1: root: "},
         {"  child_head:", "  child_head: 3\n  child_tail:", "root.child_head: "},
     };
