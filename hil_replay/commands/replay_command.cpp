@@ -305,9 +305,12 @@ int replay(const ReplayArguments& arguments) {
         printed_text([&report](std::FILE* stream) { print_replay(report, stream); });
     fmt::print(arguments.json.words(), "{}", words);
     const bool written = write_outputs(arguments, report, words, outputs);
-    const int found = gpu_failed           ? kExitGpu
-                      : !end.fault.empty() ? kExitCan
-                                           : exit_code_of(run, arguments.is_realtime);
+    int found = gpu_failed           ? kExitGpu
+                : !end.fault.empty() ? kExitCan
+                                     : exit_code_of(run, arguments.is_realtime);
+    if (found == kExitClean && outputs.program && outputs.program->is_rejected()) {
+        found = kExitInput;  // a stop says more
+    }
     return written ? found : kExitInternal;
 }
 
@@ -372,12 +375,17 @@ void add_replay(CommandLine& line) {
     command.set_action([arguments, files = command.files(), program, settings] {
         const bool has_setting = std::any_of(settings.begin(), settings.end(),
                                              [](const Option& one) { return one.is_given(); });
+        if (program.is_given() && arguments->gcode.program.empty()) {
+            fmt::print(stderr, "axguard: --program: empty name. Pass a G-code program.\n");
+            return static_cast<int>(kExitUsage);
+        }
         if (program.is_given() ? !arguments->lines.empty() : has_setting) {
-            fmt::print(stderr, "axguard: {}\n",
-                       program.is_given()
-                           ? "--program replaces --lines. Leave one of them out."
-                           : "--start, --work-offset, --tool, --ignore, --block-delete, --rotary "
-                             "and --part are about a program. Pass it with --program.");
+            fmt::print(
+                stderr, "axguard: {}\n",
+                program.is_given()
+                    ? "--program replaces --lines. Leave one of them out."
+                    : "--start, --work-offset, --tool and other options about a program need one. "
+                      "Pass it with --program.");
             return static_cast<int>(kExitUsage);
         }
         const std::string lines = program_lines_name(arguments->trace);  // read without an option

@@ -197,6 +197,15 @@ void add_simulate(CommandLine& line) {
                        escaped(lines, 4096));
             return static_cast<int>(kExitUsage);
         }
+        std::error_code error;
+        const auto status = std::filesystem::status(lines, error);
+        if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+            fmt::print(stderr,
+                       "--output: {}: is no regular file, and the program's lines are written "
+                       "there. Remove it, or pass another name.\n",
+                       escaped(lines, 4096));
+            return static_cast<int>(kExitUsage);
+        }
         return run_simulate(*arguments);
     });
 }

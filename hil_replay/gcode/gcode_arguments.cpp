@@ -194,26 +194,26 @@ std::vector<Option> add_gcode_settings(const Command& command, GcodeArguments& a
             .shows_default(),
         command.add_option("--part", arguments.part,
                            "body that carries the part, for tool centre point control [default: "
-                           "the body that most axes move]")};
+                           "the body that most axes move]"),
+        command
+            .add_option("--max-errors", arguments.faults_max,
+                        "number of faults after which reading stops")
+            .between(1, 1000000)
+            .shows_default(),
+        command
+            .add_option("--max-lines", arguments.lines_max,
+                        "largest number of lines to run, repeated lines included")
+            .between(std::int64_t{1}, std::int64_t{1'000'000'000'000})
+            .shows_default(),
+        command.add_option("--max-moves", arguments.moves_max, "largest number of moves in memory")
+            .between(std::int64_t{1}, static_cast<std::int64_t>(kProgramMovesMax))
+            .shows_default()};
 }
 
 void add_gcode_options(const Command& command, GcodeArguments& arguments) {
     command.add_input("PROGRAM", arguments.program, "G-code program in LinuxCNC's dialect")
         .required();
     add_gcode_settings(command, arguments);
-    command
-        .add_option("--max-errors", arguments.faults_max,
-                    "number of faults after which reading stops")
-        .between(1, 1000000)
-        .shows_default();
-    command
-        .add_option("--max-lines", arguments.lines_max,
-                    "largest number of lines to run, repeated lines included")
-        .between(std::int64_t{1}, std::int64_t{1'000'000'000'000})
-        .shows_default();
-    command.add_option("--max-moves", arguments.moves_max, "largest number of moves in memory")
-        .between(std::int64_t{1}, static_cast<std::int64_t>(kProgramMovesMax))
-        .shows_default();
     command
         .add_option("--max-samples", arguments.samples_max,
                     "largest number of samples of the motion")

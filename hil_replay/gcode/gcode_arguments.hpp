@@ -23,7 +23,7 @@ struct GcodeArguments {
 };
 
 void add_gcode_options(const Command& command, GcodeArguments& arguments);
-/// Of these only what the control would know, without the program and without bounds.
+/// Of these all that reading needs besides the program.
 std::vector<Option> add_gcode_settings(const Command& command, GcodeArguments& arguments);
 
 /// Everything of it that means something only with a machine at hand. False: used wrongly, and

@@ -9,6 +9,7 @@
 #include <span>
 #include <unordered_map>
 
+#include "config/text/quote_text.hpp"
 #include "core/base/sincos.hpp"
 #include "firmware_if/setup/surface_list.hpp"
 #include "hil_replay/page/page_parts.hpp"
@@ -18,6 +19,8 @@
 
 namespace axg {
 namespace {
+
+constexpr std::size_t kTitleCharactersMax = 4096;
 
 nlohmann::ordered_json pose_json(const Pose& pose) {
     auto rows = nlohmann::ordered_json::array();
@@ -170,7 +173,7 @@ std::string machine_data(const LoadedMachine& loaded) {
 
 std::string page_data(const RunPage& page) {
     const nlohmann::ordered_json head{
-        {"title", page.title},
+        {"title", escaped(page.title, kTitleCharactersMax)},
         {"words", page.words},
         {"within_mm", kPageWithinMm},
         {"deadline_us", page.deadline_us},

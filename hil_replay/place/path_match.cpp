@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "core/base/sincos.hpp"
@@ -13,10 +14,15 @@ namespace {
 
 constexpr std::size_t kChordsInBox = 64;
 constexpr std::size_t kPlacesMax = 64;
-// Of equally near chords the first one: so much nearer a mm further on has to be.
-constexpr double kMmPerMmAhead = 0.05;
+// Of equally near chords the first one: so much nearer a mm further on has to be. Where a path
+// turns round, the way back is two mm further for each that the positions are away from its end.
+constexpr double kMmPerMmAhead = 0.3;
 constexpr double kLeastMm = 3 * kMatchWithinMm;  // less is a crossing
-constexpr double kDecidedMm = 200;  // so far along the first place, and the others are given up
+constexpr double kDecidedMm = 200;  // so far along the best place, and the others are given up
+constexpr double kLateMm = 5;       // of the motion, in which the distance from a place is averaged
+constexpr double kAlikeMm = 0.02;   // places with no more between them fit alike
+constexpr double kWorseMm = 0.1;    // so much farther than the best one is no place
+constexpr double kPoorMm = 0.1;     // a best place so far away: there may be a nearer one
 
 double distance_mm(std::span<const double> a, std::span<const double> b) {
     double sum = 0;
@@ -96,7 +102,8 @@ double PathMatch::away_from(const Box& box) const {
 }
 
 /// False: the positions have left this place, which is as it was.
-bool PathMatch::follow(Place& place, double reach_mm) const {
+bool PathMatch::follow(Place& place, double step_mm) const {
+    const double reach_mm = 2 * step_mm + kMatchWithinMm;
     Nearest best{.away_mm = std::numeric_limits<double>::max()};
     double least = best.away_mm;
     std::size_t chord = place.chord;
@@ -115,6 +122,7 @@ bool PathMatch::follow(Place& place, double reach_mm) const {
     }
     place.chord = chord;
     place.along_mm = best.along_mm;
+    place.away_mm += std::min(1.0, step_mm / kLateMm) * (best.away_mm - place.away_mm);
     return true;
 }
 
@@ -128,18 +136,19 @@ void PathMatch::mark(Place& place, std::int64_t time_us) const {
 
 /// Wherever the path is near: the nearest point of each stretch of it. Behind the last place first,
 /// for programs run forward.
-void PathMatch::find_places() {
-    std::vector<Place> before;
+std::vector<PathMatch::Place> PathMatch::places_here() const {
+    std::vector<Place> places, before;
     Nearest best{.away_mm = std::numeric_limits<double>::max()};
     std::size_t best_chord = 0;
     std::vector<double> turns(here_.size()), best_turns = turns;
     double since_mm = 0;
     const auto end_stretch = [&] {
         if (best.away_mm <= kMatchWithinMm) {
-            (best.along_mm >= last_mm_ ? places_ : before)
+            (best.along_mm >= last_mm_ ? places : before)
                 .push_back({.chord = best_chord,
                             .along_mm = best.along_mm,
                             .born_mm = best.along_mm,
+                            .away_mm = best.away_mm,
                             .turns = best_turns});
         }
         best.away_mm = std::numeric_limits<double>::max();
@@ -167,18 +176,86 @@ void PathMatch::find_places() {
         }
     }
     end_stretch();
-    places_.insert(places_.end(), before.begin(), before.end());
-    places_.resize(std::min(places_.size(), kPlacesMax));
+    places.insert(places.end(), before.begin(), before.end());
+    return places;
 }
 
-/// Two that have come to the same point are one.
-void PathMatch::drop_repeated() {
-    const double first_mm = places_.front().along_mm;
-    const bool is_decided = first_mm - places_.front().born_mm >= kDecidedMm;
-    places_.erase(std::remove_if(
-                      places_.begin() + 1, places_.end(),
-                      [&](const Place& place) { return is_decided || place.along_mm == first_mm; }),
-                  places_.end());
+void PathMatch::find_places() {
+    tried_ = here_;
+    places_ = places_here();
+    while (places_.size() > kPlacesMax) {  // the farthest one, of those the last
+        const auto farthest =
+            std::max_element(places_.rbegin(), places_.rend(),
+                             [](const Place& a, const Place& b) { return a.away_mm < b.away_mm; });
+        places_.erase(std::prev(farthest.base()));
+    }
+}
+
+/// While no place fits well: what was found so far is settled, and nearer ones are places too.
+void PathMatch::find_nearer() {
+    tried_ = here_;
+    const double poor_mm = least_away();
+    std::vector<Place> nearer = places_here();
+    std::erase_if(nearer, [&](const Place& place) {
+        return place.away_mm > poor_mm - kPoorMm / 2 ||
+               std::any_of(places_.begin(), places_.end(), [&](const Place& known) {
+                   return std::abs(known.along_mm - place.along_mm) < kMatchWithinMm / 2;
+               });
+    });
+    if (nearer.empty()) {
+        return;
+    }
+    commit(best());
+    for (Place& place : places_) {
+        place.marks.clear();
+        place.samples = 0;
+    }
+    nearer.resize(std::min(nearer.size(), kPlacesMax - places_.size()));
+    std::move(nearer.begin(), nearer.end(), std::back_inserter(places_));
+}
+
+/// One that was followed for a while; where there is none, each.
+bool PathMatch::counts(const Place& place) const noexcept {
+    const auto is_known = [](const Place& one) { return one.along_mm - one.born_mm >= kLeastMm; };
+    return is_known(place) || std::none_of(places_.begin(), places_.end(), is_known);
+}
+
+double PathMatch::least_away() const noexcept {
+    double least = std::numeric_limits<double>::max();
+    for (const Place& place : places_) {
+        least = counts(place) ? std::min(least, place.away_mm) : least;
+    }
+    return least;
+}
+
+/// Of those that fit alike the first.
+PathMatch::Place& PathMatch::best() noexcept {
+    const double least = least_away();
+    return *std::find_if(places_.begin(), places_.end(), [&](const Place& place) {
+        return counts(place) && place.away_mm <= least + kAlikeMm;
+    });
+}
+
+/// Two that have come to the same point are one; in time only the best is left.
+void PathMatch::drop_worse() {
+    const Place& chosen = best();
+    const double least = least_away(), at_mm = chosen.along_mm;
+    const double born_mm = chosen.born_mm;
+    const bool is_decided = at_mm - born_mm >= kDecidedMm;
+    const Place* const kept = &chosen;
+    std::vector<Place> left;
+    for (Place& place : places_) {
+        const bool is_known = counts(place);
+        const bool is_alike = place.away_mm <= least + kAlikeMm && place.along_mm != at_mm;
+        is_repeated_ = is_repeated_ || (is_decided && is_known && is_alike && born_mm != 0);
+        const bool is_left =
+            &place == kept || (place.along_mm != at_mm &&
+                               !(is_known && (is_decided || place.away_mm > least + kWorseMm)));
+        if (is_left) {
+            left.push_back(std::move(place));
+        }
+    }
+    places_ = std::move(left);
 }
 
 void PathMatch::add(std::int64_t time_us, std::span<const double> position) {
@@ -200,20 +277,22 @@ void PathMatch::add(std::int64_t time_us, std::span<const double> position) {
         return;
     }
     if (!places_.empty()) {
-        const auto left = std::stable_partition(places_.begin(), places_.end(), [&](Place& place) {
-            return follow(place, 2 * step_mm + kMatchWithinMm);
-        });
+        const auto left = std::stable_partition(
+            places_.begin(), places_.end(), [&](Place& place) { return follow(place, step_mm); });
         if (left == places_.begin()) {
-            commit(places_.front());
+            commit(best());
             commit_mark(time_us, 0);
         }
         places_.erase(left, places_.end());
-    } else if (tried_.empty() || distance_mm(here_, tried_) >= kMatchWithinMm / 2) {
-        tried_ = here_;
+    }
+    const bool has_moved = tried_.empty() || distance_mm(here_, tried_) >= kMatchWithinMm / 2;
+    if (places_.empty() && has_moved) {
         find_places();
+    } else if (!places_.empty() && has_moved && least_away() > kPoorMm) {
+        find_nearer();
     }
     if (!places_.empty()) {
-        drop_repeated();
+        drop_worse();
         for (Place& place : places_) {
             mark(place, time_us);
         }
@@ -239,7 +318,14 @@ void PathMatch::commit(const Place& place) {
 
 const std::vector<PathMatch::Mark>& PathMatch::finish() {
     if (!places_.empty()) {
-        commit(places_.front());
+        const Place& last = best();
+        const double least = least_away();
+        is_repeated_ =
+            is_repeated_ || (last.born_mm != 0 &&
+                             std::any_of(places_.begin(), places_.end(), [&](const Place& place) {
+                                 return &place != &last && place.away_mm <= least + kAlikeMm;
+                             }));
+        commit(last);
         places_.clear();
     }
     return marks_;

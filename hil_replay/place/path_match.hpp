@@ -35,11 +35,14 @@ class PathMatch {
     [[nodiscard]] std::uint64_t samples() const noexcept { return samples_; }
     /// Of them those on the path.
     [[nodiscard]] std::uint64_t matched() const noexcept { return matched_; }
+    /// Somewhere another pass fitted as well as the first one, whose lines were taken.
+    [[nodiscard]] bool is_repeated() const noexcept { return is_repeated_; }
 
   private:
     struct Place {
         std::size_t chord = 0;  // from this point to the next
         double along_mm = 0, born_mm = 0;
+        double away_mm = 0;           // of late
         std::vector<double> turns{};  // [axes] path mm from the positions to the program's
         std::uint64_t samples = 0;
         std::vector<Mark> marks{};
@@ -55,10 +58,15 @@ class PathMatch {
                                   std::span<const double> turns) const;
     void find_turns(std::size_t chord, std::span<double> turns) const;
     [[nodiscard]] double away_from(const Box& box) const;
-    [[nodiscard]] bool follow(Place& place, double reach_mm) const;
+    [[nodiscard]] bool follow(Place& place, double step_mm) const;
     void mark(Place& place, std::int64_t time_us) const;
+    [[nodiscard]] std::vector<Place> places_here() const;
     void find_places();
-    void drop_repeated();
+    void find_nearer();
+    [[nodiscard]] bool counts(const Place& place) const noexcept;
+    [[nodiscard]] double least_away() const noexcept;
+    [[nodiscard]] Place& best() noexcept;
+    void drop_worse();
     void commit(const Place& place);
     void commit_mark(std::int64_t time_us, std::uint32_t line);
 
@@ -70,6 +78,7 @@ class PathMatch {
     std::vector<Mark> marks_;
     double last_mm_ = 0;  // where the last place was left
     std::uint64_t samples_ = 0, matched_ = 0;
+    bool is_repeated_ = false;
 };
 
 }  // namespace axg

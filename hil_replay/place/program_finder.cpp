@@ -25,9 +25,12 @@ void ProgramFinder::read(const AxisSnapshot& first) {
     print_messages(arguments_.program, reading);
     if (!reading.faults.empty()) {
         fmt::print(stderr,
-                   "{}: no program lines: the program was rejected. Correct it, or see "
+                   "{}: no program lines: the program was rejected{}. Correct it, or see "
                    "docs/reference/gcode.md.\n",
-                   escaped(arguments_.program, 4096));
+                   escaped(arguments_.program, 4096),
+                   arguments_.start.empty() ? ", started from the trace's first sample. Where the "
+                                              "program starts elsewhere, pass --start"
+                                            : "");
         return;
     }
     ProgramPath path = make_program_path(reading.program, machine_);
@@ -61,11 +64,13 @@ ProgramLines ProgramFinder::finish() {
     }
     lines.program = arguments_.program;
     add_blocks(lines, text_);
+    const char* const hint =
+        2 * match_->matched() < match_->samples()
+            ? ". Check --work-offset, --tool and --start, or whether this program ran."
+        : match_->is_repeated() ? ". Passes that are alike: lines are those of the first."
+                                : "";
     fmt::print(stderr, "{}: {} of {} samples are on its path{}\n",
-               escaped(arguments_.program, 4096), match_->matched(), match_->samples(),
-               2 * match_->matched() < match_->samples()
-                   ? ". Check --work-offset, --tool and --start, or whether this program ran."
-                   : "");
+               escaped(arguments_.program, 4096), match_->matched(), match_->samples(), hint);
     return lines;
 }
 

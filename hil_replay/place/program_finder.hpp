@@ -28,6 +28,8 @@ class ProgramFinder {
     /// After the last sample: without steps where nothing matched, or the program was rejected.
     /// stderr has how much matched.
     [[nodiscard]] ProgramLines finish();
+    /// It could not be used: stderr has why.
+    [[nodiscard]] bool is_rejected() const noexcept { return is_read_ && !match_; }
 
   private:
     void read(const AxisSnapshot& first);

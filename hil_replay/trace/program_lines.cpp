@@ -102,6 +102,11 @@ bool take_checksum(std::string_view& text) {
     return take_number(last, sum, 16) && last == "\n" && sum == crc_of(text);
 }
 
+/// A name with an end of line in it is shown as the terminal shows it: nobody opens that name.
+std::string on_one_line(const std::string& name) {
+    return name.find_first_of("\n\r") == std::string::npos ? name : escaped(name, kProgramNameMax);
+}
+
 }  // namespace
 
 std::string program_lines_name(const std::string& trace) {
@@ -132,9 +137,9 @@ void add_blocks(ProgramLines& lines, std::string_view program_text) {
 }
 
 std::string program_lines_text(const ProgramLines& lines) {
-    std::string text =
-        fmt::format("{}\nprogram {}\nprogram_crc32 {:08x}\ntrace_bytes {}\ntrace_crc32 {:08x}\n",
-                    kTitle, lines.program, lines.program_crc, lines.trace_bytes, lines.trace_crc);
+    std::string text = fmt::format(
+        "{}\nprogram {}\nprogram_crc32 {:08x}\ntrace_bytes {}\ntrace_crc32 {:08x}\n", kTitle,
+        on_one_line(lines.program), lines.program_crc, lines.trace_bytes, lines.trace_crc);
     for (const ProgramStep& step : lines.steps) {
         text += fmt::format("{} {} {}\n", step.time_us, step.line, step.block);
     }

@@ -114,6 +114,15 @@ TEST_F(ReplayCommand, ARecordedTraceIsMatchedWithItsProgram) {
             << shop->err;
     }
     EXPECT_EQ(replay("recorded.log --program none.ngc"), kExitInput) << shop->err;
+    EXPECT_EQ(replay("recorded.log --program ''"), kExitUsage) << shop->err;
+    (void)shop->write("bad.ngc", "G1 X20\nM2\n");  // no F
+    EXPECT_EQ(replay("recorded.log --program bad.ngc"), kExitCollision) << "the stop says more";
+    EXPECT_NE(shop->err.find("no program lines: the program was rejected, started from the trace's "
+                             "first sample. Where the program starts elsewhere, pass --start."),
+              std::string::npos)
+        << shop->err;
+    EXPECT_EQ(replay("brief.log --program bad.ngc"), kExitInput);
+    EXPECT_EQ(replay("brief.log --program bad.ngc --max-lines 5"), kExitInput);
     EXPECT_EQ(replay("recorded.log --work-offset 'G54 X30'"), kExitUsage);
     EXPECT_NE(shop->err.find("Pass it with --program."), std::string::npos) << shop->err;
     EXPECT_EQ(replay("recorded.log --lines demo.log.lines --program " + test::kDemoProgram),

@@ -68,6 +68,7 @@ class PathMatchTest : public testing::Test {
         }
         const std::vector<PathMatch::Mark> marks = match.finish();
         matched_ = match.matched();
+        is_repeated_ = match.is_repeated();
         std::vector<std::uint32_t> lines(samples.size(), 0);
         for (std::size_t k = 0; k < marks.size(); ++k) {
             const auto end = k + 1 < marks.size() ? static_cast<std::size_t>(marks[k + 1].time_us)
@@ -91,6 +92,7 @@ class PathMatchTest : public testing::Test {
     Machine machine_;
     AxisPositions start_{};
     std::uint64_t matched_ = 0;
+    bool is_repeated_ = false;
 };
 
 const std::string kHead = "G21 G90 G94\n";  // lines of the blocks below begin at 2
@@ -131,6 +133,99 @@ TEST_F(PathMatchTest, ATraceThatBeginsInTheMiddleIsFound) {
     std::vector<Sample> samples = motion_of(program);
     samples.erase(samples.begin(), samples.begin() + static_cast<long>(samples.size() / 3));
     EXPECT_LT(wrong(samples, match(program, samples)), 0.01);
+}
+
+// As a black box begins: levels a little apart, of which all are within reach of the search.
+TEST_F(PathMatchTest, OfPassesCloseTogetherTheNearestIsFound) {
+    for (const double apart : {0.9, 0.5, 0.3, 0.1}) {
+        std::string text = kHead;
+        for (int level = 0; level < 8; ++level) {
+            text += "G1 Z" + std::to_string(40 - level * apart) + " F3000\nX40\nY30\nX0\nY0\n";
+        }
+        const Program program = program_of(text + "G0 Z50\nM2\n");
+        std::vector<Sample> samples = motion_of(program);
+        samples.erase(samples.begin(), samples.begin() + static_cast<long>(samples.size() / 2));
+        EXPECT_LT(wrong(samples, match(program, samples)), 0.01) << apart;
+        EXPECT_FALSE(is_repeated_) << apart;
+    }
+}
+
+// Part of the trace is missing: the next sample is a level lower, far along a place without a
+// doubt.
+TEST_F(PathMatchTest, AfterAHoleANearerPassIsFound) {
+    std::string text = kHead;
+    for (int level = 0; level < 8; ++level) {
+        text += "G1 Z" + std::to_string(40 - level * 0.3) + " F3000\nX40\nY30\nX0\nY0\n";
+    }
+    const Program program = program_of(text + "G0 Z50\nM2\n");
+    std::vector<Sample> samples = motion_of(program);
+    const auto found = [&](std::uint32_t line) {  // 16 mm along its block
+        return std::find_if(samples.begin(), samples.end(), [line](const Sample& one) {
+            return one.line == line && one.position[0] > 16;
+        });
+    };
+    samples.erase(found(18), found(28));  // two levels
+    EXPECT_LT(wrong(samples, match(program, samples)), 0.03);
+}
+
+TEST_F(PathMatchTest, AfterAJogTheLevelIsFoundAgain) {
+    std::string text = kHead;
+    for (int level = 0; level < 8; ++level) {
+        text += "G1 Z" + std::to_string(40 - level * 0.5) + " F3000\nX40\nY30\nX0\nY0\n";
+    }
+    const Program program = program_of(text + "G0 Z50\nM2\n");
+    std::vector<Sample> samples = motion_of(program);
+    const auto at = static_cast<long>(samples.size() / 2);
+    std::vector<Sample> jog(1200, samples[static_cast<std::size_t>(at)]);
+    for (int k = 0; k < 1200; ++k) {  // up past the levels above, and down again
+        jog[static_cast<std::size_t>(k)].position[2] += 0.02 * std::min(k, 1199 - k);
+    }
+    const std::size_t back = static_cast<std::size_t>(at) + jog.size() + 100;
+    samples.insert(samples.begin() + at, jog.begin(), jog.end());
+    const std::vector<std::uint32_t> lines = match(program, samples);
+    std::size_t wrong_after = 0;
+    for (std::size_t i = back; i < samples.size(); ++i) {
+        wrong_after += lines[i] != samples[i].line ? 1 : 0;
+    }
+    EXPECT_LT(wrong_after, samples.size() / 100);
+}
+
+TEST_F(PathMatchTest, OfPassesThatAreAlikeTheFirstIsNamedAndItIsSaid) {
+    std::string text = kHead;
+    for (int pass = 0; pass < 6; ++pass) {
+        text += "G1 X40 F3000\nY20\nX0\nY0\n";
+    }
+    const Program program = program_of(text + "M2\n");
+    std::vector<Sample> samples = motion_of(program);
+    EXPECT_LT(wrong(samples, match(program, samples)), 0.01);
+    EXPECT_FALSE(is_repeated_) << "from the start there is no doubt";
+    samples.erase(samples.begin(), samples.begin() + static_cast<long>(samples.size() / 2));
+    EXPECT_LE(match(program, samples)[samples.size() / 20], 5U);
+    EXPECT_TRUE(is_repeated_);
+}
+
+// A zigzag finer than the search reaches, with the noise of a drive.
+TEST_F(PathMatchTest, NoiseDoesNotSkipAFinePath) {
+    std::string text = kHead + "G1 Z40 F600\n";
+    for (int k = 0; k < 60; ++k) {
+        text += k % 2 == 0 ? "G1 X0.8\n" : "G1 X0\n";
+        text += "G1 Y" + std::to_string(0.1 * (k + 1)) + "\n";
+    }
+    const Program program = program_of(text + "M2\n");
+    std::vector<Sample> samples = motion_of(program);
+    std::mt19937_64 random(test::printed_seed(32));
+    std::normal_distribution<double> noise(0, 0.01);
+    for (Sample& one : samples) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            one.position[i] += noise(random);
+        }
+    }
+    const std::vector<std::uint32_t> lines = match(program, samples);
+    std::size_t far = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        far += lines[i] > samples[i].line + 1 || lines[i] + 1 < samples[i].line ? 1 : 0;
+    }
+    EXPECT_LT(far, samples.size() / 50);
 }
 
 TEST_F(PathMatchTest, BesideThePathThereIsNoLine) {

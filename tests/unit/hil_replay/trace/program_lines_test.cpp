@@ -43,6 +43,15 @@ TEST(ProgramLines, AreReadAsTheyWereWritten) {
     EXPECT_EQ(read.program, "part one.ngc");
 }
 
+TEST(ProgramLines, ANameOfTwoLinesLeavesTheTableReadable) {
+    ProgramLines lines = some_lines();
+    lines.program = "part\ntwo.ngc";
+    ProgramLines read;
+    ASSERT_EQ(read_program_lines("t.lines", program_lines_text(lines), read), "");
+    EXPECT_EQ(read.program.find('\n'), std::string::npos);
+    EXPECT_EQ(read.steps.size(), lines.steps.size());
+}
+
 TEST(ProgramLines, NoLineIsReadFromADamagedTable) {
     const std::string text = program_lines_text(some_lines());
     for (std::size_t i = 0; i < text.size(); ++i) {
