@@ -40,6 +40,17 @@ TIP_CLEAN = TIP + "G1 X20 Y-10 Z40 A10\nM429\nM2\n"
 TIP_COLLIDE = TIP + "G1 Z-5\nM429\nM2\n"
 
 
+# LinuxCNC's own programs for its sample of this machine. They go down to the face of its rotary
+# table, into the plate of ours; 60 mm higher they touch nothing.
+DEMOS = pathlib.Path("/usr/share/doc/linuxcnc/examples/sample-configs/sim/axis/vismach/5axis/"
+                     "table-rotary-tilting/demos")
+
+
+def demo(name, head=""):
+    path = DEMOS / f"{name}.ngc"
+    return head + path.read_text(encoding="ascii") if path.exists() else "M2\n"
+
+
 def clean_program(source, lines):
     text = (source / "hil_replay/programs/paper-trunnion-clean.ngc").read_text(encoding="ascii")
     rows = text.strip().strip("%").strip().splitlines()
@@ -67,6 +78,9 @@ def scenarios(source):
         "xyzbc_clean": (TIP_CLEAN.replace("A", "B"), False, {}),
         "xyzbc_collide": (TIP_COLLIDE.replace("A", "B"), True, {}),
         "clean_whole": (clean_program(source, None), False, {}),
+        **{f"xyzac_demo_{n}": (demo(f"xyzac_switchkins_test_{n}"), True, {}) for n in (1, 2)},
+        **{f"xyzac_demo_{n}_raised":
+           (demo(f"xyzac_switchkins_test_{n}", "G10 L2 P1 Z60\n"), False, {}) for n in (1, 2)},
     }
 
 
