@@ -26,6 +26,8 @@
 namespace axg {
 namespace {
 
+const std::string kProgram = test::source_file("tests/can_vm/rest_collide.ngc");
+
 /// The live guard, the engine's thread and the logger over one wire, by a counter for time.
 class RecordedWorld {
   public:
@@ -136,8 +138,7 @@ class BlackBoxReplayTest : public testing::Test {
         if (!std::filesystem::exists(AXG_PROGRAM)) {
             return;
         }
-        const std::string program = test::source_file("tests/can_vm/rest_collide.ngc");
-        ASSERT_EQ(shop->run("simulate " + test::kPaperMachine + " " + program + " -o trace.log"),
+        ASSERT_EQ(shop->run("simulate " + test::kPaperMachine + " " + kProgram + " -o trace.log"),
                   kExitClean)
             << shop->err;
         trace = test::read_trace(shop->file("trace.log"));
@@ -250,6 +251,7 @@ TEST_F(BlackBoxReplayTest, AStopIsFoundAgainAtTheSameSampleForTheSameReasonAndPa
     EXPECT_GT(all["recorded"]["latched_us"].get<long>(), 0);
     EXPECT_EQ(all["why"]["pair"], "cutter-c");
     EXPECT_GT(all["why"]["needed_mm"].get<double>(), all["why"]["available_mm"].get<double>());
+    EXPECT_EQ(replay(kExitCollision, "--program " + kProgram)["program_block"], "G0 Z-230");
     // It goes back to the start, so everything is compared.
     EXPECT_GT(all["verdicts"]["same"].get<long>(), 100);
     EXPECT_EQ(all["verdicts"]["different"], 0);
