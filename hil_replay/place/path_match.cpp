@@ -214,38 +214,41 @@ void PathMatch::find_nearer() {
     std::move(nearer.begin(), nearer.end(), std::back_inserter(places_));
 }
 
-/// One that was followed for a while; where there is none, each.
-bool PathMatch::counts(const Place& place) const noexcept {
-    const auto is_known = [](const Place& one) { return one.along_mm - one.born_mm >= kLeastMm; };
-    return is_known(place) || std::none_of(places_.begin(), places_.end(), is_known);
+/// How far a place must have been followed to count, mm: where none was followed for a while, each
+/// one counts.
+double PathMatch::least_way() const noexcept {
+    const bool has_known = std::any_of(places_.begin(), places_.end(), [](const Place& place) {
+        return place.way_mm() >= kLeastMm;
+    });
+    return has_known ? kLeastMm : 0;
 }
 
 double PathMatch::least_away() const noexcept {
+    const double way_mm = least_way();
     double least = std::numeric_limits<double>::max();
     for (const Place& place : places_) {
-        least = counts(place) ? std::min(least, place.away_mm) : least;
+        least = place.way_mm() >= way_mm ? std::min(least, place.away_mm) : least;
     }
     return least;
 }
 
 /// Of those that fit alike the first.
 PathMatch::Place& PathMatch::best() noexcept {
-    const double least = least_away();
+    const double way_mm = least_way(), least = least_away();
     return *std::find_if(places_.begin(), places_.end(), [&](const Place& place) {
-        return counts(place) && place.away_mm <= least + kAlikeMm;
+        return place.way_mm() >= way_mm && place.away_mm <= least + kAlikeMm;
     });
 }
 
 /// Two that have come to the same point are one; in time only the best is left.
 void PathMatch::drop_worse() {
-    const Place& chosen = best();
-    const double least = least_away(), at_mm = chosen.along_mm;
-    const double born_mm = chosen.born_mm;
-    const bool is_decided = at_mm - born_mm >= kDecidedMm;
-    const Place* const kept = &chosen;
+    const Place* const kept = &best();
+    const double way_mm = least_way(), least = least_away(), at_mm = kept->along_mm;
+    const double born_mm = kept->born_mm;
+    const bool is_decided = kept->way_mm() >= kDecidedMm;
     std::vector<Place> left;
     for (Place& place : places_) {
-        const bool is_known = counts(place);
+        const bool is_known = place.way_mm() >= way_mm;
         const bool is_alike = place.away_mm <= least + kAlikeMm && place.along_mm != at_mm;
         is_repeated_ = is_repeated_ || (is_decided && is_known && is_alike && born_mm != 0);
         const bool is_left =
@@ -306,7 +309,7 @@ void PathMatch::commit_mark(std::int64_t time_us, std::uint32_t line) {
 }
 
 void PathMatch::commit(const Place& place) {
-    if (place.along_mm - place.born_mm < kLeastMm) {
+    if (place.way_mm() < kLeastMm) {
         return;
     }
     for (const Mark& one : place.marks) {

@@ -46,6 +46,8 @@ class PathMatch {
         std::vector<double> turns{};  // [axes] path mm from the positions to the program's
         std::uint64_t samples = 0;
         std::vector<Mark> marks{};
+
+        [[nodiscard]] double way_mm() const noexcept { return along_mm - born_mm; }
     };
     struct Box {
         std::vector<float> low{}, high{};
@@ -63,7 +65,7 @@ class PathMatch {
     [[nodiscard]] std::vector<Place> places_here() const;
     void find_places();
     void find_nearer();
-    [[nodiscard]] bool counts(const Place& place) const noexcept;
+    [[nodiscard]] double least_way() const noexcept;
     [[nodiscard]] double least_away() const noexcept;
     [[nodiscard]] Place& best() noexcept;
     void drop_worse();

@@ -12,7 +12,7 @@
 
 #include "config/compiled/compiled_machine.hpp"
 #include "hil_replay/gcode/gcode_reader.hpp"
-#include "hil_replay/motion/motion_sampler.hpp"
+#include "tests/support/program_places.hpp"
 #include "tests/support/seed.hpp"
 
 namespace axg {
@@ -43,12 +43,8 @@ class PathMatchTest : public testing::Test {
     }
     /// As a board sends them: an endless axis within one turn.
     std::vector<Sample> motion_of(const Program& program) {
-        const MotionLimits limits = make_motion_limits(machine_);
-        const MotionOptions options;
-        MotionSampler sampler(program, limits, options);
         std::vector<Sample> out;
-        MotionSample sample;
-        while (sampler.next(sample)) {
+        for (const MotionSample& sample : test::path_of(program, machine_)) {
             if (sample.index % kEvery == 0) {
                 out.push_back({sample.line, sample.position});
                 for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
@@ -97,6 +93,15 @@ class PathMatchTest : public testing::Test {
 
 const std::string kHead = "G21 G90 G94\n";  // lines of the blocks below begin at 2
 
+/// Eight passes, this far apart.
+std::string levels(double apart_mm) {
+    std::string text = kHead;
+    for (int level = 0; level < 8; ++level) {
+        text += "G1 Z" + std::to_string(40 - level * apart_mm) + " F3000\nX40\nY30\nX0\nY0\n";
+    }
+    return text + "G0 Z50\nM2\n";
+}
+
 TEST_F(PathMatchTest, EveryInstantHasItsLine) {
     const Program program = program_of(kHead +
                                        "G0 X20 Y10 Z50\nG1 X40 F3000\nY30\nG2 X60 Y50 I20 J0\n"
@@ -138,11 +143,7 @@ TEST_F(PathMatchTest, ATraceThatBeginsInTheMiddleIsFound) {
 // As a black box begins: levels a little apart, of which all are within reach of the search.
 TEST_F(PathMatchTest, OfPassesCloseTogetherTheNearestIsFound) {
     for (const double apart : {0.9, 0.5, 0.3, 0.1}) {
-        std::string text = kHead;
-        for (int level = 0; level < 8; ++level) {
-            text += "G1 Z" + std::to_string(40 - level * apart) + " F3000\nX40\nY30\nX0\nY0\n";
-        }
-        const Program program = program_of(text + "G0 Z50\nM2\n");
+        const Program program = program_of(levels(apart));
         std::vector<Sample> samples = motion_of(program);
         samples.erase(samples.begin(), samples.begin() + static_cast<long>(samples.size() / 2));
         EXPECT_LT(wrong(samples, match(program, samples)), 0.01) << apart;
@@ -153,11 +154,7 @@ TEST_F(PathMatchTest, OfPassesCloseTogetherTheNearestIsFound) {
 // Part of the trace is missing: the next sample is a level lower, far along a place without a
 // doubt.
 TEST_F(PathMatchTest, AfterAHoleANearerPassIsFound) {
-    std::string text = kHead;
-    for (int level = 0; level < 8; ++level) {
-        text += "G1 Z" + std::to_string(40 - level * 0.3) + " F3000\nX40\nY30\nX0\nY0\n";
-    }
-    const Program program = program_of(text + "G0 Z50\nM2\n");
+    const Program program = program_of(levels(0.3));
     std::vector<Sample> samples = motion_of(program);
     const auto found = [&](std::uint32_t line) {  // 16 mm along its block
         return std::find_if(samples.begin(), samples.end(), [line](const Sample& one) {
@@ -169,11 +166,7 @@ TEST_F(PathMatchTest, AfterAHoleANearerPassIsFound) {
 }
 
 TEST_F(PathMatchTest, AfterAJogTheLevelIsFoundAgain) {
-    std::string text = kHead;
-    for (int level = 0; level < 8; ++level) {
-        text += "G1 Z" + std::to_string(40 - level * 0.5) + " F3000\nX40\nY30\nX0\nY0\n";
-    }
-    const Program program = program_of(text + "G0 Z50\nM2\n");
+    const Program program = program_of(levels(0.5));
     std::vector<Sample> samples = motion_of(program);
     const auto at = static_cast<long>(samples.size() / 2);
     std::vector<Sample> jog(1200, samples[static_cast<std::size_t>(at)]);
