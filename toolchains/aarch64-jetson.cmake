@@ -35,7 +35,11 @@ if(CMAKE_CUDA_COMPILER MATCHES "clang")  # CUDA 12.6 of jetpack6_toolkit.sh
   get_filename_component(toolkit "${CMAKE_CURRENT_LIST_DIR}/../build/cuda12-aarch64" ABSOLUTE)
   set(CUDAToolkit_ROOT "${toolkit}")
   set(CMAKE_CUDA_COMPILER_TARGET aarch64-linux-gnu)
+  # By /lib it would name headers in a folder that is not there, and ninja build them each time.
+  set(CMAKE_CUDA_COMPILER_EXTERNAL_TOOLCHAIN "${CMAKE_SYSROOT}/usr")
   set(CMAKE_CUDA_RUNTIME_LIBRARY None)  # PyPI has no static one of 12.6; the board has libcudart
+  # What links libaxguard.so needs the runtime that it needs.
+  string(APPEND CMAKE_EXE_LINKER_FLAGS_INIT " -Wl,-rpath-link,${toolkit}/lib")
   list(APPEND CMAKE_FIND_ROOT_PATH "${toolkit}")
 elseif(CMAKE_CUDA_COMPILER)
   get_filename_component(toolkit "${CMAKE_CUDA_COMPILER}" DIRECTORY)

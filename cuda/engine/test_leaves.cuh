@@ -53,7 +53,8 @@ struct Shared {
     static constexpr bool kPrefetched = kData == AxisData::prefetched;
     Tile tiles[kWarps];
     std::conditional_t<kStored, AxisTile[kWarps], std::byte> axes;
-    alignas(16) std::conditional_t<kPrefetched, NextPair[kWarps], std::byte> next;
+    alignas(kPrefetched ? alignof(NextPair)
+                        : 16) std::conditional_t<kPrefetched, NextPair[kWarps], std::byte> next;
     std::uint32_t count;  // pairs of leaves of the batch
     bool is_lost;         // the batch, as far as this block knows
 };
