@@ -3,7 +3,7 @@
 option(AXG_FUZZ "Build the fuzz targets (needs clang's libFuzzer; preset host-asan)" OFF)
 
 foreach(folder support style vectors oracle device parity model mutants fuzz benchmarks can_vm
-        browser linuxcnc)
+        browser linuxcnc fresh)
   if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/CMakeLists.txt)
     add_subdirectory(${folder})
   endif()
