@@ -25,14 +25,15 @@ SPDX_NAMES = {"Expat": "MIT", "BSD-3-clause": "BSD-3-Clause", "BSD-2-clause": "B
               "BSD-3-Clause": "BSD-3-Clause", "LGPL-2.1+": "LGPL-2.1-or-later",
               "LGPL-3+": "LGPL-3.0-or-later",
               "GPL-2": "GPL-2.0-only", "GPL-2+": "GPL-2.0-or-later"}
-# Whose copyright file is not in Debian's machine-readable form, or names no licence of SPDX's.
+# Whose copyright file is not in Debian's machine-readable form, or names no licence of SPDX's;
+# without the version of the compiler.
 READ_BY_HAND = {"libfmt-dev": "MIT WITH fmt-exception", "libfmt9": "MIT WITH fmt-exception",
                 "libc6-dev": "LGPL-2.1-or-later", "libc6": "LGPL-2.1-or-later",
                 "linux-libc-dev": "GPL-2.0-only WITH Linux-syscall-note",
-                "libclang-common-19-dev": "Apache-2.0 WITH LLVM-exception",
-                "libgcc-12-dev": "GPL-3.0-or-later WITH GCC-exception-3.1",
+                "libclang-common-dev": "Apache-2.0 WITH LLVM-exception",
+                "libgcc-dev": "GPL-3.0-or-later WITH GCC-exception-3.1",
                 "libgcc-s1": "GPL-3.0-or-later WITH GCC-exception-3.1",
-                "libstdc++-12-dev": "GPL-3.0-or-later WITH GCC-exception-3.1",
+                "libstdc++-dev": "GPL-3.0-or-later WITH GCC-exception-3.1",
                 "libstdc++6": "GPL-3.0-or-later WITH GCC-exception-3.1"}
 
 
@@ -87,7 +88,7 @@ def packages_of_host(paths):
 
 def licence_of(package, copyright_file):
     """As an SPDX expression where the copyright file says so in a way that programs can read."""
-    by_hand = READ_BY_HAND.get(package.removesuffix("-arm64-cross"))
+    by_hand = READ_BY_HAND.get(re.sub("-[0-9]+-dev$", "-dev", package.removesuffix("-arm64-cross")))
     if by_hand:
         return by_hand
     text = copyright_file.read_text(errors="replace") if copyright_file.exists() else ""
