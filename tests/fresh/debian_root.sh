@@ -1,11 +1,13 @@
 # shellcheck shell=bash
 # SPDX-License-Identifier: Apache-2.0
 # A new Debian in a folder, for the scripts beside this: sourced with place (a folder that is not
-# there yet, or empty), keep (yes or no), include (packages) and release (bookworm, trixie)
-# set. Needs root, debootstrap and
-# the network; mirror, proxy and certificates are those that apt uses on this machine. Gives
-# timed, inside, mounted and log; what was made is removed at the end unless it is kept.
+# there yet, or empty), keep (yes or no), include (packages) and release (bookworm, trixie) set, and
+# architecture where it is not this machine's: qemu-aarch64-static then runs every program. Needs
+# root, debootstrap and the network; mirror, proxy and certificates are those that apt uses on this
+# machine. Gives timed, inside, mounted and log; what was made is removed at the end unless it is
+# kept.
 : "${keep:?}" "${include:?}" "${release:?}"
+architecture=${architecture:-$(dpkg --print-architecture)}
 if [[ $(id -u) -ne 0 ]] || ! command -v debootstrap >/dev/null; then
     echo "$(basename "$0"): needs root and debootstrap (apt-get install debootstrap)" >&2
     exit 2
@@ -18,9 +20,10 @@ fi
 log=$place.log
 mkdir -p "$place"
 
-mounted=()
+mounted=() emulator=''
 leave() {
     local code=$? folder
+    [[ -z $emulator ]] || echo -1 >"$emulator"
     for folder in "${mounted[@]}"; do
         umount --lazy "$folder"
     done
@@ -32,6 +35,19 @@ leave() {
     return "$code"
 }
 trap leave EXIT
+
+# The kernel starts the emulator for programs of arm64, in the new system too, until the end.
+formats=/proc/sys/fs/binfmt_misc
+if [[ $architecture == arm64 && $(uname -m) != aarch64 && ! -e $formats/qemu-aarch64 ]]; then
+    format=/usr/lib/binfmt.d/qemu-aarch64.conf
+    if [[ ! -e $format ]]; then
+        echo "$(basename "$0"): needs apt-get install qemu-user-static" >&2
+        exit 2
+    fi
+    [[ -e $formats/register ]] || mount -t binfmt_misc binfmt_misc "$formats"
+    cat "$format" >"$formats/register"
+    emulator=$formats/qemu-aarch64
+fi
 
 # shellcheck disable=SC2016 # the fields are apt's
 mirror=$(apt-get indextargets --format '$(SITE) $(CODENAME) $(COMPONENT)' 2>/dev/null |
@@ -55,8 +71,8 @@ inside() { # COMMAND: in the new system, with this machine's proxy settings and 
         chroot "$place" bash -c "$1"
 }
 
-timed debootstrap debootstrap --variant=minbase --include="$include" "$release" "$place" \
-    "$mirror"
+timed debootstrap debootstrap --arch="$architecture" --variant=minbase --include="$include" \
+    "$release" "$place" "$mirror"
 cp -L /etc/resolv.conf "$place/etc/resolv.conf"
 apt-config dump | grep -E '^Acquire::(http|https|ftp|Check|Retries)' \
     >"$place/etc/apt/apt.conf.d/99-host" || true
