@@ -167,8 +167,9 @@ typedef struct axg_axis {
     uint8_t reserved[6];
     double min, max;  // travel; 0 of an endless axis
     double speed, acceleration;
-    double jerk;      // 0: no limit is promised
-    double stopping;  // the least deceleration in a stop
+    double jerk;                         // 0: no limit is promised
+    double stopping;                     // the least deceleration in a stop
+    double jog_speed, jog_acceleration;  // 0: guard.single_jog is not stated
 } axg_axis;
 
 // What a board has to know of the machine file; the names are those of axg_board_options.

@@ -109,6 +109,8 @@ static bool send_options(host* host) {
     }
     for (uint32_t i = 0; i < terms->axis_count; ++i) {
         option[AXG_WIRE_STOPPING + i] = terms->axes[i].stopping;
+        option[AXG_WIRE_JOG_SPEED + i] = terms->axes[i].jog_speed;
+        option[AXG_WIRE_JOG_ACCELERATION + i] = terms->axes[i].jog_acceleration;
     }
     bool is_sent = true;
     for (uint32_t i = 0; i < AXG_WIRE_OPTIONS; ++i) {

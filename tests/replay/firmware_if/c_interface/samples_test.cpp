@@ -196,6 +196,10 @@ TEST(CInterfaceSamples, TheTermsAreThoseOfTheMachineFile) {
     EXPECT_DOUBLE_EQ(terms.axes[3].stopping, 500);
     EXPECT_DOUBLE_EQ(terms.axes[0].jerk, 50000);
     EXPECT_EQ(terms.axes[4].is_endless, 1);
+    ASSERT_TRUE(machine.guard.jog.is_promised);
+    EXPECT_DOUBLE_EQ(terms.axes[0].jog_speed, machine.guard.jog.speed_mm_s);
+    EXPECT_DOUBLE_EQ(terms.axes[3].jog_acceleration,
+                     machine.guard.jog.acceleration_rad_s2 * 180 / std::numbers::pi);
 }
 
 // A program that was compiled with the version before: its axg_state ends where it did.
