@@ -49,6 +49,8 @@ axg_terms board_terms(const Machine& machine, const ConfigurationHashes& hashes)
     out.stop_id = can.stop_id;
     out.hashes_in_id = can.hashes_in_id;
     out.hashes_out_id = can.hashes_out_id;
+    out.operator_in_id = can.operator_in_id;
+    out.operator_out_id = can.operator_out_id;
     std::copy(hashes.of.begin(), hashes.of.end(), out.hashes);
     out.axis_count = static_cast<std::uint32_t>(machine.axes.size());
     out.first_tool = machine.first_tool;

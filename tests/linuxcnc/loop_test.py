@@ -37,7 +37,8 @@ SWING = HEAD + "G0 X100 Y-80 Z40\nG0 X-100 Y80 A-20 C90\n" * 4 + "G0 X0 Y0 Z50 A
 # The tool of the collision stands about a millimetre above the plate. Down it may go on only as far
 # as the guard's reach of a jog, and then not at all. The other way, another joint, or more speed
 # than the machine file promises stop; up it comes out.
-UP = {"joint": 2, "way": 20, "speed": 4}
+AFTER = HEAD + "G0 Z40\nG0 X100 Y-80 A0 C0\nM2\n"
+UP = {"joint": 2, "way": 8, "speed": 4}
 JOGS = [({"joint": 2, "way": -5, "speed": 4}, "stopped"),
         ({"joint": 2, "way": -1, "speed": 4}, "refused"), (UP | {"command": -1}, "stopped"),
         (UP | {"also": 0}, "stopped"), (UP | {"speed": 6}, "stopped"), (UP, "done")]
@@ -84,11 +85,11 @@ def scenarios(source):
         "late": (SWING, True, {"events": [{"do": "late", "after_s": 1.5}]}),
         "feed": (SWING, False, {"events": feed}),
         "unguarded": (COLLIDE, False, {}),
-        "jog": (COLLIDE, True, {"jogs": [order for order, _ in JOGS], "after": SWING}),
+        "jog": (COLLIDE, True, {"jogs": [order for order, _ in JOGS], "after": AFTER}),
         "tool": (TOOLS, False, {}),
         "tool_collide": (TOOLS.replace("Z40\nT1 M6", "Z40"), True, {}),
         "tool_in_motion": (SWING, True, {"events": [{"do": "tool_change", "after_s": 1.5}]}),
-        "tool_unknown": (TOOLS.replace("T2 M6", "T3 M6"), False, {"limit_s": 8}),
+        "tool_unknown": (TOOLS.replace("T2 M6", "T3 M6"), False, {"limit_s": 5}),
         "xyzac_clean": (TIP_CLEAN, False, {}),
         "xyzac_collide": (TIP_COLLIDE, True, {}),
         "xyzbc_clean": (TIP_CLEAN.replace("A", "B"), False, {}),
@@ -100,9 +101,9 @@ def scenarios(source):
     }
 
 
-USUAL = ["clean", "collide", "collide_feed", "kill", "kill_approach", "late", "feed",
-         "unguarded", "jog", "tool", "tool_collide", "tool_in_motion", "tool_unknown",
-         "xyzac_clean", "xyzac_collide", "xyzbc_clean", "xyzbc_collide"]
+# At most three minutes; the others run by hand, by name.
+USUAL = ["clean", "collide", "kill_approach", "late", "unguarded", "jog", "tool", "tool_collide",
+         "tool_unknown", "xyzac_clean"]
 
 
 def tip_error(rows, machine):
@@ -127,31 +128,31 @@ def tip_error(rows, machine):
     return worst, count
 
 
-def stop_facts(rows, stopping):
+def stop_facts(rows, stopping, period_s=PERIOD_S):
     """Of each ramp: its periods beside the longest that the promise allows; the same from the
     sample at which the last permit was used; and whether a joint turned round."""
     ends = [i for i in range(2, len(rows)) if rows[i][7] and not rows[i - 1][7]]
-    return [ramp_facts(rows, stopping, first) for first in ends]
+    return [ramp_facts(rows, stopping, first, period_s) for first in ends]
 
 
-def ramp_facts(rows, stopping, first):
+def ramp_facts(rows, stopping, first, period_s):
     before = [rows[first - 1][1 + j] - rows[first - 2][1 + j] for j in range(5)]
     rest = first
     while rest < len(rows) and rows[rest][1:6] != rows[rest - 1][1:6]:
         rest += 1
-    ramp = max(abs(step) / PERIOD_S / d for step, d in zip(before, stopping)) / PERIOD_S
+    ramp = max(abs(step) / period_s / d for step, d in zip(before, stopping)) / period_s
     # While no permit comes, the time that is left falls by a period each period.
     used = first - 1
     while used > 0 and rows[used][8] < rows[used - 1][8]:
         used -= 1
     turned = any((rows[i][1 + j] - rows[i - 1][1 + j]) * before[j] < -1e-12
                  for i in range(first, rest) for j in range(5))
+    left = rows[used][8] / 1e6 / period_s
     return {"at": rows[first][0], "turned": turned,
-            "speeds": [round(abs(step) / PERIOD_S, 1) for step in before],
+            "speeds": [round(abs(step) / period_s, 1) for step in before],
             "periods": rest - first + 1, "promised": round(REACTION_PERIODS + ramp + 1, 1),
-            "permit_left": rows[used][8] / 1000, "from_last_permit": rest - used,
-            "from_last_permit_promised": round(rows[used][8] / 1000 + REACTION_PERIODS + ramp + 1,
-                                               1)}
+            "permit_left": round(left, 3), "from_last_permit": rest - used,
+            "from_last_permit_promised": round(left + REACTION_PERIODS + ramp + 1, 1)}
 
 
 def check_jogs(said):
