@@ -26,6 +26,7 @@ extern "C" {
 #define AXG_INTERFACE_VERSION 3U
 #define AXG_AXES_MAX 16U
 #define AXG_HASH_PARTS 4U
+#define AXG_SAMPLE_FRAMES_MAX 40U  // of axg_guard_encode_sample
 #define AXG_NO_PAIR UINT32_MAX
 
 typedef enum axg_status {
@@ -167,15 +168,17 @@ typedef struct axg_axis {
     uint8_t reserved[6];
     double min, max;  // travel; 0 of an endless axis
     double speed, acceleration;
-    double jerk;      // 0: no limit is promised
-    double stopping;  // the least deceleration in a stop
+    double jerk;                         // 0: no limit is promised
+    double stopping;                     // the least deceleration in a stop
+    double jog_speed, jog_acceleration;  // 0: guard.single_jog is not stated
 } axg_axis;
 
 // What a board has to know of the machine file; the names are those of axg_board_options.
 typedef struct axg_terms {
     uint32_t period_us, jitter_us, reaction_us;
     uint32_t permit_id, stop_id;
-    uint32_t hashes_in_id, hashes_out_id;  // 0: hashes are not compared
+    uint32_t hashes_in_id, hashes_out_id;      // 0: hashes are not compared
+    uint32_t operator_in_id, operator_out_id;  // of a panel's messages, and of the status
     uint32_t hashes[AXG_HASH_PARTS];
     uint32_t axis_count;
     uint16_t first_tool;
@@ -207,6 +210,14 @@ AXG_API axg_status axg_guard_receive(axg_guard* guard, const axg_frame* frame);
 // @param now_us  time of arrival
 // @return  AXG_STATUS_BAD_CALL: another format or number of axes, or a position that does not fit
 AXG_API axg_status axg_guard_put_sample(axg_guard* guard, const axg_sample* sample, int64_t now_us);
+
+// Writes the frames that axg_guard_put_sample would queue: for a board that sends its samples to a
+// guard on another computer. The guard need not be started; samples in order, as above.
+// @param out    [capacity] out; AXG_SAMPLE_FRAMES_MAX are always enough
+// @param count  out
+// @return  AXG_STATUS_BAD_CALL: as axg_guard_put_sample, or too small a capacity
+AXG_API axg_status axg_guard_encode_sample(axg_guard* guard, const axg_sample* sample,
+                                           axg_frame out[], uint32_t capacity, uint32_t* count);
 
 // Does all work due at now_us except geometry; takes microseconds. now_us must not decrease. A
 // result of axg_guard_evaluate counts as received at the start of the next axg_guard_process.

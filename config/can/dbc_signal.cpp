@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "config/can/signal_rules.hpp"
+#include "core/machine/can_id.hpp"
 
 namespace axg {
 namespace {
@@ -54,8 +55,8 @@ std::string to_can_signal(const DbcMessage& message, const DbcSignal& signal, Ca
     if (!signal.refused.empty()) {
         return signal.refused;
     }
-    if (message.is_extended || message.id == 0) {
-        return "a 29-bit identifier, or identifier 0";
+    if (message.id == 0) {
+        return "identifier 0";
     }
     if (!is_can_length(message.length_bytes)) {
         return "a message of " + std::to_string(message.length_bytes) + " bytes";
@@ -69,7 +70,7 @@ std::string to_can_signal(const DbcMessage& message, const DbcSignal& signal, Ca
         return "a factor of 0, or outside 1e-12 to 1e9";
     }
     CanSignal made;
-    made.id = message.id;
+    made.id = wire_id(message.id, message.is_extended);
     made.start_bit = static_cast<std::uint16_t>(signal.start_bit);
     made.length_bits = static_cast<std::uint8_t>(signal.length_bits);
     made.order = signal.order;

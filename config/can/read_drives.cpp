@@ -16,6 +16,7 @@
 #include "config/text/map_reader.hpp"
 #include "config/text/nearest_word.hpp"
 #include "config/text/quote_text.hpp"
+#include "core/machine/can_id.hpp"
 
 namespace axg {
 namespace {
@@ -31,9 +32,33 @@ std::string hex(std::uint32_t value, int digits) {
     return buffer.data();
 }
 
+/// As object 0x1800 + n, sub 1, has it: bit 29 marks an identifier of 29 bits.
+std::uint32_t id_of_cob(std::uint32_t cob_id) noexcept {
+    const bool is_extended = (cob_id & kExtendedId) != 0;
+    return wire_id(cob_id & (is_extended ? kExtendedIdMax : kStandardIdMax), is_extended);
+}
+
+bool read_cob_id(MapReader& reader, std::uint32_t& id) {
+    std::uint32_t cob_id = 0;
+    if (!reader.can_id("cob_id", Need::required, {0x001, kExtendedId | kExtendedIdMax}, cob_id)) {
+        return false;
+    }
+    if (cob_id == kExtendedId || (cob_id < kExtendedId && cob_id > kStandardIdMax)) {
+        reader.report("cob_id", hex(cob_id, 3),
+                      "0x001 to 0x7FF, or 0x20000000 plus an identifier of 29 bits");
+        return false;
+    }
+    id = id_of_cob(cob_id);
+    return true;
+}
+
+std::string id_text(std::uint32_t id) {
+    return hex(id_number(id), is_extended_id(id) ? 8 : 3);
+}
+
 /// A PDO that counts: sent after every SYNC.
 struct Pdo {
-    std::uint32_t cob_id = 0;
+    std::uint32_t cob_id = 0;  // bit 31: of 29 bits
     std::vector<std::uint32_t> map;
     std::string place;  // " (drive.dcf:628)", or nothing
 };
@@ -175,7 +200,7 @@ bool DriveReader::read_written(const YamlNode& list, std::vector<Pdo>& pdos) {
         const std::string path = reader_.path_of("pdos") + '[' + std::to_string(i) + ']';
         MapReader one{list.entries[i].value, path, {"cob_id", "map"}, draft_.faults};
         Pdo pdo;
-        is_sound = one.can_id("cob_id", Need::required, {0x001, 0x7FF}, pdo.cob_id) && is_sound;
+        is_sound = read_cob_id(one, pdo.cob_id) && is_sound;
         const YamlNode* map = one.find("map", Need::required, "a list of mapped objects");
         if (map == nullptr || map->kind != YamlNode::Kind::sequence) {
             if (map != nullptr) {
@@ -223,21 +248,18 @@ bool DriveReader::read_file(std::vector<Pdo>& pdos) {
         if ((one.cob_id & kPdoOff) != 0) {
             continue;
         }
-        if (one.transmission_type != 1 || (one.cob_id & kExtendedId) != 0) {
+        if (one.transmission_type != 1) {
             if (has_position) {
-                reader_.report(
-                    "file",
-                    "TPDO" + std::to_string(one.number) + " with the position, " +
-                        ((one.cob_id & kExtendedId) != 0
-                             ? "under a 29-bit identifier"
-                             : "of transmission type " + std::to_string(one.transmission_type)) +
-                        place,
-                    "11 bits, and type 1: latched and sent at every SYNC");
+                reader_.report("file",
+                               "TPDO" + std::to_string(one.number) +
+                                   " with the position, of transmission type " +
+                                   std::to_string(one.transmission_type) + place,
+                               "type 1: latched and sent at every SYNC");
                 return false;
             }
             continue;
         }
-        pdos.push_back({one.cob_id & 0x7FFU, one.map, place});
+        pdos.push_back({id_of_cob(one.cob_id), one.map, place});
     }
     return faults.empty();
 }
@@ -275,7 +297,7 @@ void DriveReader::place(const std::vector<Pdo>& pdos, std::uint32_t object, std:
         if (at > kPdoBitsMax || at % 8 != 0) {
             reader_.report(
                 reader_.has("file") ? "file" : "pdos",
-                "a PDO of " + std::to_string(at) + " bits under " + hex(pdo.cob_id, 3) + pdo.place,
+                "a PDO of " + std::to_string(at) + " bits under " + id_text(pdo.cob_id) + pdo.place,
                 "whole bytes, at most 8 of them");
             return;
         }
@@ -346,7 +368,7 @@ void check_drive_ids(MapReader& can, const Machine& machine) {
         for (std::size_t j = 0; j < i; ++j) {
             if (signals[i].id == signals[j].id && signals[i].axis != signals[j].axis) {
                 can.report("drives",
-                           hex(signals[i].id, 3) + " for both " +
+                           id_text(signals[i].id) + " for both " +
                                machine.axes[signals[j].axis].name + " and " +
                                machine.axes[signals[i].axis].name,
                            "identifiers of its own for each drive");

@@ -14,6 +14,7 @@
 #include "config/text/map_reader.hpp"
 #include "config/text/nearest_word.hpp"
 #include "config/text/quote_text.hpp"
+#include "core/machine/can_id.hpp"
 
 namespace axg {
 namespace {
@@ -43,12 +44,31 @@ void check_reach(MapReader& reader, const Axis& axis, const CanSignal& signal) {
     }
 }
 
+/// Of 29 bits only where the file writes so: the number of an identifier does not show its kind.
+bool read_id(MapReader& reader, CanSignal& signal) {
+    bool is_extended = false;
+    if (reader.has("extended") && !reader.boolean("extended", Need::optional, is_extended)) {
+        return false;
+    }
+    std::uint32_t number = 0;
+    if (!reader.can_id("id", Need::required, {0x001, kExtendedIdMax}, number)) {
+        return false;
+    }
+    signal.id = wire_id(number, is_extended);
+    if (!is_wire_id(signal.id)) {
+        reader.report("id", shown(*reader.find("id", Need::required, "an integer")),
+                      "an integer from 0x001 to 0x7FF, or extended: true for 29 bits");
+        return false;
+    }
+    return true;
+}
+
 bool read_layout(MapReader& reader, CanSignal& signal) {
     constexpr std::array<std::string_view, 2> kOrders{"little", "big"};
     std::uint32_t start = 0;
     std::uint32_t length = 0;
     std::size_t order = 0;
-    bool sound = reader.can_id("id", Need::required, {0x001, 0x7FF}, signal.id);
+    bool sound = read_id(reader, signal);
     sound &= reader.whole("start", Need::required, {0, kFrameBitsMax - 1}, start);
     sound &= reader.whole("length", Need::required, {1, 64}, length);
     sound &= reader.choice("order", Need::required, kOrders, order);
@@ -74,10 +94,11 @@ void read_signal(const YamlEntry& entry, std::uint32_t axis_index, MachineDraft&
                  std::map<std::uint32_t, std::vector<Taken>>& taken) {
     const Axis& axis = draft.machine.axes[axis_index];
     const std::string path = "can.signals." + entry.key;
-    MapReader reader{entry.value,
-                     path,
-                     {"id", "start", "length", "order", "signed", "factor", "offset", "unit"},
-                     draft.faults};
+    MapReader reader{
+        entry.value,
+        path,
+        {"id", "extended", "start", "length", "order", "signed", "factor", "offset", "unit"},
+        draft.faults};
     CanSignal signal;
     signal.axis = axis_index;
     const std::size_t faults_before = draft.faults.count();

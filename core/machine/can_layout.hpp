@@ -41,7 +41,7 @@ struct SignalSelector {
 /// One value inside a frame that is not ours. Bits are numbered as a DBC file numbers them:
 /// `start_bit` is the least significant bit (little) or the most significant (big).
 struct CanSignal {
-    std::uint32_t id = 0;
+    std::uint32_t id = 0;    // bit 31: of 29 bits, see can_id.hpp
     std::uint32_t axis = 0;  // index into Machine::axes, for roles of an axis
     std::uint16_t start_bit = 0;
     std::uint8_t length_bits = 0;

@@ -26,6 +26,7 @@
 #include "firmware_if/setup/guard_parts.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
 
+static_assert(AXG_SAMPLE_FRAMES_MAX >= axg::kFramesPerSnapshotMax);
 static_assert(sizeof(axg_latch) == sizeof(axg::LatchCell) &&
               offsetof(axg_latch, inverse) == offsetof(axg::LatchCell, inverse));
 static_assert(AXG_AXES_MAX == axg::kAxesMax && AXG_HASH_PARTS == axg::kHashParts);
@@ -359,6 +360,21 @@ axg_status axg_guard_put_sample(axg_guard* guard, const axg_sample* sample, int6
         is_queued = guard->wire.arrive({.frame = frame}) && is_queued;
     }
     return is_queued ? AXG_STATUS_OK : AXG_STATUS_QUEUE_FULL;
+}
+
+axg_status axg_guard_encode_sample(axg_guard* guard, const axg_sample* sample, axg_frame out[],
+                                   uint32_t capacity, uint32_t* count) {
+    if (guard == nullptr || sample == nullptr || out == nullptr || count == nullptr) {
+        return AXG_STATUS_BAD_CALL;
+    }
+    const std::span<const axg::CanFrame> frames =
+        guard->samples.encode(*sample, sample->latched_us);
+    if (frames.empty() || frames.size() > capacity) {
+        return AXG_STATUS_BAD_CALL;
+    }
+    std::transform(frames.begin(), frames.end(), out, to_c);
+    *count = static_cast<std::uint32_t>(frames.size());
+    return AXG_STATUS_OK;
 }
 
 axg_status axg_guard_process(axg_guard* guard, int64_t now_us, axg_state* out) {

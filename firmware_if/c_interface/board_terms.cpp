@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/certificate/jog.hpp"
 #include "firmware_if/c_interface/sample_frames.hpp"
 
 namespace axg {
@@ -16,7 +17,7 @@ std::uint32_t microseconds(double seconds) noexcept {
     return static_cast<std::uint32_t>(std::lround(seconds * kUsPerS));
 }
 
-axg_axis axis_of(const Axis& axis) noexcept {
+axg_axis axis_of(const Axis& axis, const JogRules& jogs) noexcept {
     axg_axis out{};
     axis.name.copy(out.name, sizeof out.name - 1);
     out.is_rotary = axis.kind == AxisKind::rotary ? 1 : 0;
@@ -28,6 +29,11 @@ axg_axis axis_of(const Axis& axis) noexcept {
     out.acceleration = axis.acceleration_max * unit;
     out.jerk = has_jerk_limit(axis) ? axis.jerk_max * unit : 0;
     out.stopping = axis.stopping_min * unit;
+    if (jogs.is_promised) {
+        const AxisLimits limits = jog_limits(jogs, axis);
+        out.jog_speed = limits.speed_max * unit;
+        out.jog_acceleration = limits.acceleration_max * unit;
+    }
     return out;
 }
 
@@ -43,6 +49,8 @@ axg_terms board_terms(const Machine& machine, const ConfigurationHashes& hashes)
     out.stop_id = can.stop_id;
     out.hashes_in_id = can.hashes_in_id;
     out.hashes_out_id = can.hashes_out_id;
+    out.operator_in_id = can.operator_in_id;
+    out.operator_out_id = can.operator_out_id;
     std::copy(hashes.of.begin(), hashes.of.end(), out.hashes);
     out.axis_count = static_cast<std::uint32_t>(machine.axes.size());
     out.first_tool = machine.first_tool;
@@ -50,7 +58,8 @@ axg_terms board_terms(const Machine& machine, const ConfigurationHashes& hashes)
     out.permit_samples_max = can.permit_samples.most;
     out.takes_samples = takes_samples(machine) ? 1 : 0;
     out.is_independent = machine.guard.promise == StopPromise::independent ? 1 : 0;
-    std::transform(machine.axes.begin(), machine.axes.end(), out.axes, axis_of);
+    std::transform(machine.axes.begin(), machine.axes.end(), out.axes,
+                   [&](const Axis& axis) { return axis_of(axis, machine.guard.jog); });
     return out;
 }
 

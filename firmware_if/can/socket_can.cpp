@@ -16,6 +16,8 @@
 #include <cstring>
 #include <ctime>
 
+#include "core/machine/can_id.hpp"
+
 namespace axg {
 namespace {
 
@@ -35,12 +37,16 @@ bool set_option(int socket, int level, int name, const Value& value) noexcept {
     return setsockopt(socket, level, name, &value, sizeof value) == 0;
 }
 
-/// Only data frames with these 11-bit ids: a mask without the flags would let extended frames with
-/// the same low bits through.
+/// Only data frames with these ids: a mask without the flags would let extended frames with the
+/// same low bits through.
 bool set_filters(int socket, const CanIds& ids) noexcept {
     std::array<can_filter, kCanFiltersMax> filters{};
     for (std::uint32_t i = 0; i < ids.count; ++i) {
-        filters[i] = {.can_id = ids.id[i], .can_mask = CAN_EFF_FLAG | CAN_RTR_FLAG | CAN_SFF_MASK};
+        // The mark of 29 bits is CAN_EFF_FLAG itself.
+        const bool is_extended = is_extended_id(ids.id[i]);
+        filters[i] = {
+            .can_id = ids.id[i],
+            .can_mask = CAN_EFF_FLAG | CAN_RTR_FLAG | (is_extended ? CAN_EFF_MASK : CAN_SFF_MASK)};
     }
     return setsockopt(socket, SOL_CAN_RAW, CAN_RAW_FILTER, filters.data(),
                       static_cast<socklen_t>(ids.count * sizeof(can_filter))) == 0;
@@ -242,7 +248,7 @@ SocketCan::~SocketCan() {
 
 SendStatus SocketCan::send(const CanFrame& frame) noexcept {
     canfd_frame raw{};
-    raw.can_id = frame.id;
+    raw.can_id = wire_id(frame.id, frame.extended);
     raw.len = frame.length_bytes;
     raw.flags = frame.fd && frame.bit_rate_switch ? CANFD_BRS : 0;
     std::copy_n(frame.data.begin(), std::min<std::size_t>(frame.length_bytes, sizeof raw.data),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A CAN interface of Linux: one raw socket, classical and FD, that never waits. Kernel filters let
-// through the ids of the machine file alone, data frames with 11 bits; error frames say what the
+// through the ids of the machine file alone, and only data frames; error frames say what the
 // controller sees; drops of the queue become error frames of the same kind. Times are of
 // CLOCK_MONOTONIC, us. Source: linux/Documentation/networking/can.rst, socket(7).
 #pragma once
@@ -20,7 +20,7 @@ inline constexpr std::uint32_t kCanFiltersMax = 72;  // 16 drives, three frames 
 /// The ids a live guard has to see: the board's frames, and its own, for their echo and for a
 /// second guard.
 struct CanIds {
-    std::array<std::uint32_t, kCanFiltersMax> id{};
+    std::array<std::uint32_t, kCanFiltersMax> id{};  // as core/machine/can_id.hpp marks them
     std::uint32_t count = 0;
 };
 

@@ -2,7 +2,9 @@
 // HAL component, userspace: takes the sample of every servo period from axguard_stop, hands it to
 // the guard (libaxguard) in this process, and hands the guard's frames back. Killed, it takes every
 // later permit with it: the realtime component counts the last one down by itself.
-// Usage: loadusr -W axguard-hal MACHINE.yaml [--mesh-root DIR] [--contact] [--simulation]
+// With --bus the guard is axguardd on another computer: samples leave as frames, its frames come
+// in. Usage: loadusr -W axguard-hal MACHINE.yaml [--mesh-root DIR] [--contact] [--simulation]
+// [--bus CAN]
 #include <axguard.h>
 #include <hal.h>
 #include <inttypes.h>
@@ -13,6 +15,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "firmware_if/linuxcnc/axguard_bus.h"
 #include "firmware_if/linuxcnc/axguard_wire.h"
 
 #define IDLE_NS 50000   // between two looks at an empty stream
@@ -42,7 +45,10 @@ typedef struct host {
     uint32_t arms;
     bool has_arms, wants_reset;
     bool is_simulation;  // no time passes between two samples: the servo thread waits for the guard
-    int64_t arm_until_us;  // 0: nobody arms
+    int64_t arm_until_us;   // 0: nobody arms
+    const char* interface;  // of the bus to the guard; null: it is in this process
+    axg_bus bus;
+    bool is_lost;  // a frame of ours could not be sent
 } host;
 
 static volatile sig_atomic_t ends;
@@ -109,6 +115,8 @@ static bool send_options(host* host) {
     }
     for (uint32_t i = 0; i < terms->axis_count; ++i) {
         option[AXG_WIRE_STOPPING + i] = terms->axes[i].stopping;
+        option[AXG_WIRE_JOG_SPEED + i] = terms->axes[i].jog_speed;
+        option[AXG_WIRE_JOG_ACCELERATION + i] = terms->axes[i].jog_acceleration;
     }
     bool is_sent = true;
     for (uint32_t i = 0; i < AXG_WIRE_OPTIONS; ++i) {
@@ -132,7 +140,7 @@ static void say(host* host) {
     host->has_said = true;
     host->phase_said = state->phase;
     fprintf(stderr, "axguard-hal: %" PRId64 " us: %s", host->now_us, phase_name(state->phase));
-    if (state->phase == AXG_PHASE_STOPPED) {
+    if (state->phase == AXG_PHASE_STOPPED && host->interface == NULL) {
         fprintf(stderr, ": cause %s, reason %s, pair \"%s\", input %s, bus %s", state->cause,
                 state->reason, axg_guard_pair_name(host->guard, state->pair), state->input_fault,
                 state->bus_fault);
@@ -205,6 +213,41 @@ static axg_status cycle(host* host) {
     return AXG_STATUS_OK;
 }
 
+// What came from the guard on the bus, and what a person wants of it.
+static void exchange(host* host) {
+    const int64_t host_us = host_ns() / 1000;
+    axg_frame frame;
+    while (axg_bus_receive(&host->bus, host_us, &frame)) {
+        send(host, AXG_WIRE_FRAME, frame.length_bytes, frame.id, frame.data, 0);
+    }
+    axg_bus_arm(&host->bus, host_us);
+    host->state.phase = axg_bus_phase(&host->bus, host_us);
+}
+
+static void put_on_bus(host* host, const axg_frame* frame) {
+    if (!axg_bus_send(&host->bus, frame) && !host->is_lost) {
+        host->is_lost = true;
+        fprintf(stderr, "axguard-hal: %s: a frame was not sent\n", host->interface);
+    }
+}
+
+// False: not a sample of this machine.
+static bool give(host* host, const axg_sample* sample) {
+    if (host->interface == NULL) {
+        return axg_guard_put_sample(host->guard, sample, now_us(host)) == AXG_STATUS_OK;
+    }
+    axg_frame frames[AXG_SAMPLE_FRAMES_MAX];
+    uint32_t count = 0;
+    if (axg_guard_encode_sample(host->guard, sample, frames, AXG_SAMPLE_FRAMES_MAX, &count) !=
+        AXG_STATUS_OK) {
+        return false;
+    }
+    for (uint32_t i = 0; i < count; ++i) {
+        put_on_bus(host, &frames[i]);
+    }
+    return true;
+}
+
 static void take_hash(host* host, const union hal_stream_data record[]) {
     if (record[5].u == 0) {
         return;
@@ -216,7 +259,11 @@ static void take_hash(host* host, const union hal_stream_data record[]) {
     frame.length_bytes = 8;
     memcpy(frame.data, &record[6].u, 4);
     memcpy(frame.data + 4, &record[7].u, 4);
-    axg_guard_receive(host->guard, &frame);
+    if (host->interface != NULL) {
+        put_on_bus(host, &frame);
+    } else {
+        axg_guard_receive(host->guard, &frame);
+    }
 }
 
 static uint64_t number_of(const union hal_stream_data record[]) {
@@ -238,11 +285,12 @@ static void take_sample(host* host, const union hal_stream_data record[]) {
     }
     host->sample_us = sample.latched_us;
     host->arrived_ns = host_ns();
-    if (axg_guard_put_sample(host->guard, &sample, now_us(host)) != AXG_STATUS_OK) {
+    if (!give(host, &sample) && host->interface == NULL) {
         axg_guard_notify(host->guard, AXG_EVENT_FRAMES_LOST, host->now_us);
     }
     take_hash(host, record);
     if (host->has_arms && record[4].u != host->arms) {
+        axg_bus_press(&host->bus, host_ns() / 1000);
         host->arm_until_us = host->now_us + ARM_US;
         host->wants_reset = true;
     }
@@ -266,6 +314,9 @@ static bool make_guard(host* host, int count, char** words) {
             options.mode = AXG_MODE_CONTACT;
         } else if (strcmp(words[i], "--simulation") == 0) {
             host->is_simulation = true;
+        } else if (strcmp(words[i], "--bus") == 0 && i + 1 < count) {
+            host->interface = words[++i];
+            options.engine = AXG_ENGINE_CPU;  // it only says what the machine file has
         } else if (words[i][0] != '-' && options.machine_file == NULL) {
             options.machine_file = words[i];
         } else {
@@ -276,7 +327,7 @@ static bool make_guard(host* host, int count, char** words) {
     if (options.machine_file == NULL) {
         fprintf(stderr,
                 "usage: axguard-hal MACHINE.yaml [--mesh-root DIR] [--contact] "
-                "[--simulation]\n");
+                "[--simulation] [--bus CAN]\n");
         return false;
     }
     const axg_status status = axg_guard_create(&options, &host->guard, text, sizeof text);
@@ -293,6 +344,15 @@ static bool make_guard(host* host, int count, char** words) {
                 "axguard-hal: %s: needs can.format classical or fd, no can.ahead, can.permit 2, "
                 "guard.stop_promise independent, and at most %d axes.\n",
                 options.machine_file, AXG_WIRE_JOINTS_MAX);
+        return false;
+    }
+    if (host->interface != NULL && host->is_simulation) {
+        fprintf(stderr, "axguard-hal: --bus without --simulation: another computer has its time\n");
+        return false;
+    }
+    if (host->interface != NULL &&
+        !axg_bus_open(&host->bus, host->interface, terms, text, sizeof text)) {
+        fprintf(stderr, "axguard-hal: %s\n", text);
         return false;
     }
     return true;
@@ -358,8 +418,12 @@ static axg_status run(host* host) {
         if (!has_started && newest != 0) {  // those before belong to nobody
             host->now_us = host->sample_us = (int64_t)(newest * host->terms.period_us);
             host->arrived_ns = host_ns();
-            status = axg_guard_start(host->guard, host->now_us);
+            status = host->interface != NULL ? AXG_STATUS_OK
+                                             : axg_guard_start(host->guard, host->now_us);
             has_started = send_options(host);
+        } else if (has_started && host->interface != NULL) {
+            exchange(host);
+            show(host);
         } else if (has_started && (newest != 0 || now_us(host) >= host->state.next_due_us)) {
             status = cycle(host);
             show(host);
@@ -380,6 +444,8 @@ int main(int count, char** words) {
     action.sa_handler = end;
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
+    host.bus.socket = -1;
+    host.state.proof.clearance_mm = -1;  // a guard on the bus does not say it
     if (!make_guard(&host, count, words)) {
         return 1;
     }
@@ -397,6 +463,7 @@ int main(int count, char** words) {
     if (host.comp_id > 0) {
         hal_exit(host.comp_id);
     }
+    axg_bus_close(&host.bus);
     axg_guard_destroy(host.guard);
     return result;
 }

@@ -26,6 +26,7 @@ RTAPI_MP_INT(joints, "number of joints, as the axes of the machine file");
 #define STILL_PERIODS 20  // a hold shorter than this is reported as motion
 #define STILL_STEP 1e-8   // mm or degrees a period: what kinematics may add to a position
 #define ALIGNED 1e-4      // mm or degrees: LinuxCNC commands the place where the joint is
+#define ROUNDED 1.000001  // limits of a jog: what doubles of positions add to a difference
 #define MESSAGES_A_PERIOD 64
 #define ARM_PERIODS 5000U  // so long a person's arming waits for rest and for the guard
 #define WAIT_STEP_NS 20000
@@ -40,10 +41,10 @@ typedef struct stop_pins {
     hal_bit_t* enable_out[AXG_WIRE_JOINTS_MAX];  // stays on until the ramp has ended
     hal_bit_t *arm, *permit_ok, *feed_inhibit, *estop_ok, *stopping, *spindle_on, *home_unguarded;
     hal_float_t* adaptive_feed;
-    hal_bit_t *tool_change, *tool_changed, *tool_change_out, *tool_changed_in;
-    hal_s32_t* tool_number;
-    hal_u32_t *number, *cause, *refusal, *permits, *left, *simulation_wait_us, *unheard, *last_stop,
-        *late;
+    hal_bit_t *tool_change, *tool_changed, *tool_change_out, *tool_changed_in, *jog, *jog_down;
+    hal_s32_t *tool_number, *jog_joint;
+    hal_u32_t *mode, *tool, *number, *cause, *refusal, *permits, *left, *simulation_wait_us,
+        *unheard, *last_stop, *late;
 } stop_pins;
 
 typedef enum tool_step { TOOL_NONE, TOOL_WANTED, TOOL_OUT, TOOL_PERMIT, TOOL_DONE } tool_step;
@@ -67,6 +68,8 @@ typedef struct stop_state {
     uint8_t hashes_wanted;
     tool_step tool_step;
     uint16_t tool;
+    bool is_jog, jogs_down;  // as the samples report it
+    int jog_joint;
     uint64_t done;  // sample that was answered last
     bool waits;     // simulation-wait-us: somebody answers
     uint32_t ramp_periods;
@@ -118,6 +121,7 @@ static void begin(void) {
     state.hashes_wanted = 0;
     state.arm_left = 0;
     state.guard_is_ready = false;
+    state.is_jog = false;
     if (!state.has_begun) {
         rtapi_print_msg(RTAPI_MSG_ERR,
                         "axguard-stop: the machine file has %u axes and a period of %u us (found "
@@ -224,7 +228,30 @@ static void arm(void) {
     }
 }
 
+// A person selects one joint and one way, at rest. In motion another selection is a stop, and is
+// taken over at the next rest. Without the promise of the machine file it changes nothing.
+static void select_jog(void) {
+    const int joint = *pins->jog_joint;
+    const bool is_one = joint >= 0 && joint < joints && state.has_begun &&
+                        state.option[AXG_WIRE_JOG_SPEED + joint] > 0;
+    const bool is_jog = *pins->jog && is_one && state.tool_step == TOOL_NONE;
+    const bool is_other =
+        is_jog && (joint != state.jog_joint || *pins->jog_down != state.jogs_down);
+    if (is_jog == state.is_jog && !is_other) {
+        return;
+    }
+    axg_board_change(&state.board, is_jog, now_us());
+    if (state.still >= STILL_PERIODS) {
+        state.is_jog = is_jog;
+        state.jog_joint = joint;
+        state.jogs_down = *pins->jog_down;
+    }
+}
+
 static void change_tool(bool may_move) {
+    if (state.is_jog) {
+        return;
+    }
     if (!*pins->tool_change) {
         if (state.tool_step != TOOL_NONE) {
             axg_board_end_tool(&state.board);
@@ -285,6 +312,12 @@ static bool ramp(double period_s) {
     return moves;
 }
 
+static void hold(void) {
+    for (int i = 0; i < joints; ++i) {
+        state.speed[i] = 0;
+    }
+}
+
 static bool pass(const double wanted[], double period_s) {
     bool moves = false;
     for (int i = 0; i < joints; ++i) {
@@ -296,6 +329,35 @@ static bool pass(const double wanted[], double period_s) {
     return moves;
 }
 
+// In a jog one joint moves, one way, within the limits of the machine file, and the others stay.
+static bool keeps_jog(const double wanted[], double period_s) {
+    bool keeps = true;
+    for (int i = 0; i < joints; ++i) {
+        const double step = wanted[i] - state.at[i];
+        if (i != state.jog_joint) {
+            keeps = keeps && fabs(step) <= ALIGNED;
+            continue;
+        }
+        const double forward = state.jogs_down ? -step : step;
+        const double speed = forward > 0 ? forward / period_s : 0;
+        const double change = fabs(speed - fabs(state.speed[i])) / period_s;
+        keeps = keeps && forward >= -ALIGNED &&
+                speed <= ROUNDED * state.option[AXG_WIRE_JOG_SPEED + i] &&
+                change <= ROUNDED * state.option[AXG_WIRE_JOG_ACCELERATION + i];
+    }
+    return keeps;
+}
+
+static bool pass_jog(const double wanted[], double period_s) {
+    const int i = state.jog_joint;
+    const double step = wanted[i] - state.at[i];
+    const bool moves = state.jogs_down ? step < -STILL_STEP : step > STILL_STEP;
+    hold();
+    state.speed[i] = moves ? step / period_s : 0;
+    state.at[i] += moves ? step : 0;
+    return moves;
+}
+
 static bool is_fast(void) {
     bool is_moving = false;
     for (int i = 0; i < joints; ++i) {
@@ -304,18 +366,17 @@ static bool is_fast(void) {
     return is_moving;
 }
 
-static void hold(void) {
-    for (int i = 0; i < joints; ++i) {
-        state.speed[i] = 0;
-    }
-}
-
 // Where the joints go in this period. Without permission a joint in motion is brought to rest, and
 // one at rest stays; a command that leaves it then opens the E-stop chain.
 static void move(bool may_pass, const double wanted[], bool is_aligned, double period_s) {
     bool moves = false;
+    if (may_pass && state.is_synchronous && state.is_jog && !keeps_jog(wanted, period_s)) {
+        axg_board_stop(&state.board, now_us());
+        may_pass = false;
+        state.is_latched = true;
+    }
     if (may_pass && state.is_synchronous) {
-        moves = pass(wanted, period_s);
+        moves = state.is_jog ? pass_jog(wanted, period_s) : pass(wanted, period_s);
     } else if (state.is_ramping || is_fast()) {
         state.ramp_periods = state.is_ramping ? state.ramp_periods + 1 : 1;
         state.is_ramping = moves = ramp(period_s);
@@ -339,7 +400,9 @@ static void send_sample(void) {
     memset(record, 0, sizeof record);
     axg_board_says says;
     memset(&says, 0, sizeof says);
-    says.mode = state.still < STILL_PERIODS ? 1 : 0;
+    says.mode = state.is_jog ? 3 : (state.still < STILL_PERIODS ? 1 : 0);
+    says.jogs_down = state.jogs_down;
+    says.jog_axis = (uint8_t)state.jog_joint;
     if (state.tool_step == TOOL_WANTED || state.tool_step == TOOL_OUT) {
         says.mode = 2;
     }
@@ -347,6 +410,8 @@ static void send_sample(void) {
     says.is_homed = is_homed();
     says.is_spindle_on = *pins->spindle_on;
     const uint8_t flags = axg_board_flags(&state.board, &says);
+    *pins->mode = says.mode;
+    *pins->tool = says.tool;
     record[0].u = (uint32_t)state.count;
     record[1].u = (uint32_t)(state.count >> 32);
     record[2].u = state.board.nonce;
@@ -373,7 +438,7 @@ static void send_sample(void) {
 static void show(const axg_board_motion* motion) {
     const bool may_pass = motion->may_move && !state.is_latched;
     *pins->permit_ok = may_pass;
-    *pins->feed_inhibit = !may_pass;
+    *pins->feed_inhibit = !may_pass || state.is_jog;  // a program does not run in a jog
     *pins->adaptive_feed =
         motion->may_move ? motion->ordered.of[0] / (double)AXG_BOARD_CAP_NONE : 1;
     *pins->stopping = state.is_ramping;
@@ -409,6 +474,7 @@ static void update(void* unused, long period_ns) {
     check_clock(period_ns);
     take_messages();
     wait_for_the_guard();
+    select_jog();
     arm();
     axg_board_motion motion = axg_board_may_move(&state.board, now_us());
     change_tool(motion.may_move);
@@ -460,6 +526,11 @@ static int make_pins(void) {
     NEW_PIN(bit, HAL_OUT, &pins->tool_change_out, "axguard-stop.tool-change-out");
     NEW_PIN(bit, HAL_IN, &pins->tool_changed_in, "axguard-stop.tool-changed-in");
     NEW_PIN(s32, HAL_IN, &pins->tool_number, "axguard-stop.tool-number");
+    NEW_PIN(bit, HAL_IN, &pins->jog, "axguard-stop.jog");
+    NEW_PIN(s32, HAL_IN, &pins->jog_joint, "axguard-stop.jog-joint");
+    NEW_PIN(bit, HAL_IN, &pins->jog_down, "axguard-stop.jog-down");
+    NEW_PIN(u32, HAL_OUT, &pins->mode, "axguard-stop.mode");
+    NEW_PIN(u32, HAL_OUT, &pins->tool, "axguard-stop.tool");
     NEW_PIN(u32, HAL_OUT, &pins->number, "axguard-stop.sample");
     NEW_PIN(u32, HAL_OUT, &pins->cause, "axguard-stop.cause");
     NEW_PIN(u32, HAL_OUT, &pins->refusal, "axguard-stop.refusal");

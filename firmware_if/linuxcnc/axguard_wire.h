@@ -25,7 +25,8 @@ enum {
                           // is 1 when the guard may be armed, or is
 };
 
-// Options, in the order of axg_board_options; the last one is the first of AXG_WIRE_JOINTS_MAX.
+// Options, in the order of axg_board_options; the last three are the first of
+// AXG_WIRE_JOINTS_MAX each, per second; without jogs 0.
 enum {
     AXG_WIRE_PERIOD_US = 0,
     AXG_WIRE_JITTER_US,
@@ -39,7 +40,9 @@ enum {
     AXG_WIRE_HASH,
     AXG_WIRE_TOOL = AXG_WIRE_HASH + 4,
     AXG_WIRE_STOPPING,
-    AXG_WIRE_OPTIONS = AXG_WIRE_STOPPING + AXG_WIRE_JOINTS_MAX
+    AXG_WIRE_JOG_SPEED = AXG_WIRE_STOPPING + AXG_WIRE_JOINTS_MAX,
+    AXG_WIRE_JOG_ACCELERATION = AXG_WIRE_JOG_SPEED + AXG_WIRE_JOINTS_MAX,
+    AXG_WIRE_OPTIONS = AXG_WIRE_JOG_ACCELERATION + AXG_WIRE_JOINTS_MAX
 };
 
 #endif

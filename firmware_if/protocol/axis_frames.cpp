@@ -6,6 +6,7 @@
 
 #include "core/base/finite.hpp"
 #include "core/base/sincos.hpp"
+#include "core/machine/can_id.hpp"
 #include "firmware_if/protocol/e2e.hpp"
 #include "firmware_if/protocol/permit2_frames.hpp"
 #include "firmware_if/protocol/signal_frames.hpp"
@@ -216,7 +217,7 @@ std::uint32_t slot_of(const AxisFrameSet& set, const CanFrame& frame) noexcept {
     std::uint32_t slot = 0;
     for (; slot < set.frame_count; ++slot) {
         const SignalSelector& selector = set.selectors[slot];
-        if (set.ids[slot] != (frame.id & 0x7FFU)) {
+        if (!is_id_of(set.ids[slot], frame.id, frame.extended)) {
             continue;
         }
         // A frame of another length says nothing about its turn; the decoder refuses it.
@@ -231,8 +232,8 @@ std::uint32_t slot_of(const AxisFrameSet& set, const CanFrame& frame) noexcept {
 FrameStatus decode_axis_frame(const AxisFrameSet& set, std::uint32_t slot, const CanFrame& frame,
                               AxisFrameContent& out) noexcept {
     out = AxisFrameContent{};
-    if (slot >= set.frame_count || frame.id != set.ids[slot] || frame.extended || frame.remote ||
-        frame.error) {
+    if (slot >= set.frame_count || !is_id_of(set.ids[slot], frame.id, frame.extended) ||
+        frame.remote || frame.error) {
         return FrameStatus::not_ours;
     }
     if (frame.fd != set.is_flexible[slot]) {

@@ -75,7 +75,7 @@ struct AxisFrameSet {
     std::uint32_t frame_count = 0;  // axis frames a snapshot
     std::uint32_t sample_us = 0;
     std::uint8_t sync_counter_max = kSyncCounterMax;  // 0: SYNC is empty
-    std::array<std::uint32_t, kAxisFramesMax> ids{};
+    std::array<std::uint32_t, kAxisFramesMax> ids{};  // as core/machine/can_id.hpp marks them
     std::array<std::uint16_t, kAxisFramesMax> data_ids{};
     std::array<AxisWire, kAxesMax> axes{};
     std::array<std::uint8_t, kAxisFramesMax> frame_bytes{};  // exact length of each
@@ -118,7 +118,7 @@ struct AxisFrameContent {
 enum class FrameStatus : std::uint8_t { ok, not_ours, bad_length, bad_format, raw_dlc, bad_crc };
 
 /// The axis frame of the set that carries this id, and where frames of one id take turns, this
-/// turn; frame_count where none does. Reads only the low 11 bits of the id.
+/// turn; frame_count where none does. An id of 11 bits is none of 29.
 [[nodiscard]] std::uint32_t slot_of(const AxisFrameSet& set, const CanFrame& frame) noexcept;
 
 /// Decodes axis frame number `slot` of the set. Refuses whatever is not exactly such a frame;

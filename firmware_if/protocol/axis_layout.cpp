@@ -4,14 +4,13 @@
 #include <cmath>
 
 #include "core/base/sincos.hpp"
+#include "core/machine/can_id.hpp"
 #include "firmware_if/protocol/axis_frames.hpp"
 #include "firmware_if/protocol/obeyed_by.hpp"
 #include "firmware_if/protocol/wire.hpp"
 
 namespace axg {
 namespace {
-
-constexpr std::uint32_t kStandardIdMax = 0x7FF;
 
 /// FD payloads have these lengths only; 0 if `bytes` is beyond the last.
 constexpr std::uint8_t fd_length(std::uint32_t bytes) noexcept {
@@ -49,7 +48,7 @@ LayoutStatus check_signal(const CanLayout& can, const CanSignal& signal, bool un
     if (bytes < 1 || (bytes > 8 && fd_length(bytes) != bytes)) {
         return LayoutStatus::signal_frame_length;
     }
-    if (signal.id > kStandardIdMax) {
+    if (!is_wire_id(signal.id)) {
         return LayoutStatus::id_out_of_range;
     }
     // A double holds 53 bits: more would round silently.
@@ -285,7 +284,8 @@ const char* to_text(LayoutStatus status) noexcept {
         case LayoutStatus::too_few_data_ids:
             return "too few can.data_ids: one for each axis frame";
         case LayoutStatus::id_out_of_range:
-            return "a CAN id above 0x7FF (the permit's twin uses the next id)";
+            return "a CAN id above 0x7FF, or of a signal above 29 bits (the permit's twin uses the "
+                   "next id)";
         case LayoutStatus::id_used_twice:
             return "a CAN id is used twice (the permit's twin uses the next id)";
         case LayoutStatus::look_ahead_format:

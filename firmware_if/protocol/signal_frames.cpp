@@ -7,6 +7,7 @@
 
 #include "core/base/finite.hpp"
 #include "core/base/sincos.hpp"
+#include "core/machine/can_id.hpp"
 #include "firmware_if/protocol/wire.hpp"
 
 namespace axg {
@@ -195,7 +196,8 @@ std::uint32_t fill_signals(const AxisFrameSet& set, const AxisSnapshot& snapshot
     for (std::uint32_t slot = 0; slot < set.frame_count; ++slot) {
         CanFrame& frame = out[slot];
         frame = CanFrame{};
-        frame.id = set.ids[slot];
+        frame.id = id_number(set.ids[slot]);
+        frame.extended = is_extended_id(set.ids[slot]);
         frame.length_bytes = set.frame_bytes[slot];
         frame.fd = frame.bit_rate_switch = set.is_flexible[slot];
         const SignalSelector& selector = set.selectors[slot];

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/machine/can_id.hpp"
+
 namespace axg {
 namespace {
 
@@ -183,18 +185,27 @@ ReceiverEvent AxisReceiver::on_frame(const CanFrame& frame) noexcept {
     if (frame.error) {
         return on_error_frame(frame);
     }
-    const std::uint32_t low_bits = frame.id & 0x7FFU;
     const std::uint32_t slot = slot_of(set_, frame);
     const bool is_axis = slot < set_.frame_count;
-    const bool is_sync = set_.format != CanFormat::signals && low_bits == set_.sync_id;
-    const bool is_heartbeat = is_native() && low_bits == set_.heartbeat_id;
-    const bool is_look_ahead = set_.look_ahead_samples != 0 && low_bits == set_.look_ahead_id;
-    const bool is_session = set_.session_id != 0 && low_bits == set_.session_id;
-    if (!is_axis && !is_sync && !is_heartbeat && !is_look_ahead && !is_session) {
+    // Only axis frames may have ids of 29 bits; whoever sends another one with our low bits may
+    // have meant ours.
+    const std::uint32_t low_bits = frame.id & kStandardIdMax;
+    const bool is_other = !is_axis && (frame.extended || frame.id != low_bits);
+    const auto axes_end = set_.ids.begin() + set_.frame_count;
+    const bool is_like_axis =
+        is_other && std::find(set_.ids.begin(), axes_end, low_bits) != axes_end;
+    const auto is_low = [&](bool is_used, std::uint32_t id) {
+        return !is_axis && is_used && low_bits == id;
+    };
+    const bool is_sync = is_low(set_.format != CanFormat::signals, set_.sync_id);
+    const bool is_heartbeat = is_low(is_native(), set_.heartbeat_id);
+    const bool is_look_ahead = is_low(set_.look_ahead_samples != 0, set_.look_ahead_id);
+    const bool is_session = is_low(set_.session_id != 0, set_.session_id);
+    if (!is_axis && !is_like_axis && !is_sync && !is_heartbeat && !is_look_ahead && !is_session) {
         ++counters_.foreign;
         return event();
     }
-    if (frame.extended || frame.id != low_bits) {
+    if (is_other) {
         return fault(ReceiverFault::extended_id, frame.id);
     }
     if (frame.remote) {

@@ -5,6 +5,8 @@
 #include <span>
 #include <utility>
 
+#include "core/machine/can_id.hpp"
+
 namespace axg {
 
 namespace {
@@ -75,8 +77,13 @@ void LiveLoop::drain() {
 
 bool LiveLoop::is_of_a_board(const CanFrame& frame) const noexcept {
     const auto end = set_.ids.begin() + set_.frame_count;
-    return std::find(set_.ids.begin(), end, frame.id) != end ||
-           (set_.format != CanFormat::signals &&
+    const bool is_axis = std::any_of(set_.ids.begin(), end, [&](std::uint32_t id) {
+        return is_id_of(id, frame.id, frame.extended);
+    });
+    if (is_axis || frame.extended) {
+        return is_axis;
+    }
+    return (set_.format != CanFormat::signals &&
             (frame.id == set_.sync_id || frame.id == set_.heartbeat_id)) ||
            (set_.look_ahead_samples != 0 && frame.id == set_.look_ahead_id) ||
            (set_.session_id != 0 && frame.id == set_.session_id) ||
@@ -85,11 +92,14 @@ bool LiveLoop::is_of_a_board(const CanFrame& frame) const noexcept {
 
 void LiveLoop::on_arrival(const CanArrival& arrival) {
     CanFrame frame = arrival.frame;
-    if (arrival.is_own || frame.error || frame.extended) {
+    if (arrival.is_own || frame.error) {
         return;
     }
     if (is_of_a_board(frame)) {
         report_.other_board_id = frame.id;
+        return;
+    }
+    if (frame.extended) {
         return;
     }
     Emergency emergency;

@@ -5,6 +5,7 @@
 
 #include <array>
 
+#include "core/machine/can_id.hpp"
 #include "firmware_if/protocol/axis_frames.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
 #include "hil_replay/check/check_report.hpp"
@@ -110,14 +111,20 @@ std::string meaning_of(const Machine& machine, const CanSignal& signal) {
     return "";
 }
 
+/// As candump writes them: 3 digits of 11 bits, 8 of 29.
+std::string id_text(std::uint32_t id) {
+    return is_extended_id(id) ? fmt::format("0x{:08X}", id_number(id))
+                              : fmt::format("0x{:03X}", id);
+}
+
 void print(const CheckReport& report, const CanSignal& signal, std::uint8_t frame_bytes) {
     const Machine& machine = report.loaded.machine;
     const std::string page =
         signal.selector.length_bits == 0 ? "" : fmt::format(", page {}", signal.selector.value);
     fmt::print(
-        report.words, "  {:<14} 0x{:03X}, {:>2} bytes{}  {:>3}|{:<2} {} {}{}  {}\n",
+        report.words, "  {:<14} {}, {:>2} bytes{}  {:>3}|{:<2} {} {}{}  {}\n",
         (has_axis(signal.role) ? machine.axes[signal.axis].name + " " : "") + to_text(signal.role),
-        signal.id, frame_bytes, page, signal.start_bit, signal.length_bits,
+        id_text(signal.id), frame_bytes, page, signal.start_bit, signal.length_bits,
         signal.order == ByteOrder::little ? "little" : "big",
         signal.type != SignalType::integer ? ""
         : signal.is_signed                 ? "signed "

@@ -7,6 +7,7 @@
 
 #include "core/base/sincos.hpp"
 #include "core/certificate/stop_certificate.hpp"
+#include "core/machine/can_id.hpp"
 #include "firmware_if/cli/document_json.hpp"
 #include "firmware_if/guard/live_refusal.hpp"
 #include "firmware_if/protocol/axis_frames.hpp"
@@ -46,7 +47,8 @@ Json facts_of(const Machine& machine, const CanSignal& signal, std::uint8_t fram
     if (has_axis(signal.role)) {
         facts["axis"] = machine.axes[signal.axis].name;
     }
-    facts["id"] = signal.id;
+    facts["id"] = id_number(signal.id);
+    facts["extended"] = is_extended_id(signal.id);
     facts["frame_bytes"] = frame_bytes;
     facts["start"] = signal.start_bit;
     facts["length"] = signal.length_bits;

@@ -9,8 +9,13 @@ from vm_bus import PERIOD_US, PERMIT, STOP, Bus, Guard, attempt, expect
 
 SYNC = 0x080
 NODES = (3, 4, 5, 6, 7)
+EXTENDED = 1 << 31  # of a socket; a COB-ID marks 29 bits by its bit 29
+# X and Y have the same number, of 29 bits and of 11.
+STATUS_IDS = {3: 0x184 | EXTENDED, 7: 0x18FF0187 | EXTENDED} | {n: 0x180 + n for n in (4, 5, 6)}
+COB_IDS = {node: one & ~EXTENDED | (1 << 29 if one & EXTENDED else 0)
+           for node, one in STATUS_IDS.items()}
 KEYS = "  sync: guard\n  drives:\n" + "".join(
-    f"    {axis}: {{pdos: [{{cob_id: 0x18{node}, map: [0x60410010, 0x60640020]}}, "
+    f"    {axis}: {{pdos: [{{cob_id: {COB_IDS[node]:#x}, map: [0x60410010, 0x60640020]}}, "
     f"{{cob_id: 0x28{node}, map: [0x606C0020]}}], counts: 10000, per_{unit}: 1, absolute: true, "
     f"velocity: {{counts: 1000, per_{unit}_s: 1}}"
     f"{', range_counts: 3600000' if axis == 'C' else ''}}}\n"
@@ -57,8 +62,11 @@ class Drives:
                 self.frames.append((identifier, frame[8:8 + length]))
             if identifier == SYNC:
                 for node in NODES:
-                    self.bus.send(0x180 + node, struct.pack("<Hi", 0x0237, 0))
+                    self.bus.send(STATUS_IDS[node], struct.pack("<Hi", 0x0237, 0))
                     self.bus.send(0x280 + node, struct.pack("<i", 0))
+                # Of others, with a number or low bits of ours: a fault of a drive, if one read it.
+                for other in (0x185 | EXTENDED, 0x1CFF0187 | EXTENDED, 0x187):
+                    self.bus.send(other, struct.pack("<Hi", 0x0008, 0))
                 self._say_session(frame[8])
 
     def _say_session(self, sync):

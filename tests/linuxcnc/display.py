@@ -3,6 +3,7 @@
 """The DISPLAY program of a LinuxCNC that has none: homes, arms the guard, runs a program and does
 what the scenario wants meanwhile. Writes result.json."""
 import json
+import math
 import os
 import signal
 import subprocess
@@ -66,15 +67,15 @@ def arm():
     set_pin("axguard-stop.arm", 0)
     time.sleep(0.05)
     set_pin("axguard-stop.arm", 1)
-    is_armed = until(lambda: pin("axguard-stop.permit-ok") == "TRUE", 10)
+    is_armed = until(lambda: pin("axguard-stop.permit-ok") == "TRUE", 7)
     set_pin("axguard-stop.arm", 0)
     return is_armed
 
 
-def run_program():
+def run_program(name):
     COMMAND.mode(linuxcnc.MODE_AUTO)
     COMMAND.wait_complete()
-    COMMAND.program_open(SCENARIO["program"])
+    COMMAND.program_open(os.path.join(os.getcwd(), name))
     COMMAND.wait_complete()
     COMMAND.auto(linuxcnc.AUTO_RUN, 0)
     began = time.time()
@@ -86,10 +87,56 @@ def run_program():
             act(events.pop(0))
         if STAT.task_state != linuxcnc.STATE_ON:
             return "stopped"
+        if STAT.interp_state == linuxcnc.INTERP_PAUSED and STAT.inpos:  # M0 or M1
+            RESULT["resumed"] = RESULT.get("resumed", 0) + 1
+            COMMAND.auto(linuxcnc.AUTO_RESUME)
+            time.sleep(0.1)
         if STAT.interp_state == linuxcnc.INTERP_IDLE and STAT.inpos:
             return "done"
         time.sleep(0.02)
     return "limit"
+
+
+def jog(order):
+    """By the guard's permit: a person selects joint and way, arms, switches on, and jogs. Says what
+    became of it: refused (the guard does not become ready), stopped, or done."""
+    RESULT["jogs"].append(said := {"joint": order["joint"], "way": order["way"]})
+    set_pin("axguard-stop.jog-joint", order["joint"])
+    set_pin("axguard-stop.jog-down", int(order["way"] < 0))
+    set_pin("axguard-stop.jog", 1)
+    time.sleep(0.3)
+    position = f"axguard-stop.{order['joint']}.position"
+    said.update({"from": float(pin(position)), "clearance": float(pin("axguard.clearance-mm"))})
+    if not arm():
+        return said.update(ended="refused", proven=pin("axguard.proven"))
+    switch_on()
+    COMMAND.teleop_enable(0)
+    COMMAND.wait_complete()
+    poll()
+    command = order.get("command", order["way"])
+    COMMAND.jog(linuxcnc.JOG_INCREMENT, True, order["joint"],
+                math.copysign(order["speed"], command), abs(command))
+    if "also" in order:  # a joint that was not selected
+        COMMAND.jog(linuxcnc.JOG_INCREMENT, True, order["also"], 1, 1)
+    wanted = said["from"] + order["way"]
+    is_there = until(lambda: STAT.task_state != linuxcnc.STATE_ON
+                     or abs(float(pin(position)) - wanted) < 1e-3, 20)
+    time.sleep(0.3)
+    poll()
+    said["to"] = float(pin(position))
+    is_on = STAT.task_state == linuxcnc.STATE_ON
+    return said.update(ended="done" if is_there and is_on else "stopped",
+                       cause=pin("axguard-stop.cause"))
+
+
+def jog_out():
+    """Jogs, and then the program of after.ngc, for which no jog is selected."""
+    RESULT["jogs"] = []
+    for order in SCENARIO["jogs"]:
+        jog(order)
+    set_pin("axguard-stop.jog", 0)
+    if until(lambda: pin("axguard-stop.permit-ok") == "TRUE", 2):
+        RESULT["after"] = run_program("after.ngc")
 
 
 def is_due(event, began):
@@ -118,6 +165,9 @@ def act(event):
         os.kill(guard, signal.SIGCONT)
     elif event["do"] == "inhibit":
         subprocess.run(["halcmd", "sets", "inhibit", "1"], check=True)
+    elif event["do"] == "tool_change":  # in motion, and announced by nobody
+        subprocess.run(["halcmd", "unlinkp", "axguard-stop.tool-change"], check=True)
+        set_pin("axguard-stop.tool-change", 1)
     elif event["do"] == "feed":
         COMMAND.feedrate(event["value"])
 
@@ -131,7 +181,9 @@ def main():
         if SCENARIO["guarded"]:
             RESULT["armed"] = arm()
         if RESULT["armed"] or not SCENARIO["guarded"]:
-            RESULT["ended"] = run_program()
+            RESULT["ended"] = run_program("program.ngc")
+        if RESULT["ended"] == "stopped" and "jogs" in SCENARIO:
+            jog_out()
         time.sleep(0.3)
         poll()
         if SCENARIO["guarded"]:

@@ -20,7 +20,7 @@ PERIOD_S = 1e-3
 STOPPING = {"paper-trunnion": [3500, 3500, 3500, 500, 1000], "xyzac-trt": [400] * 5,
             "xyzbc-trt": [400] * 5}
 REACTION_PERIODS = 2
-CAUSE_PERSON = 8
+CAUSE_CHANGED, CAUSE_PERSON = 5, 8
 # Of the machine files; and of the comparison with LinuxCNC's kinematics.
 PIVOT, TIP_LENGTH = {"xyzac-trt": (0, 20, 10), "xyzbc-trt": (-20, 0, -15)}, 30
 TIP_ERROR_MM = 1e-3
@@ -32,6 +32,18 @@ COLLIDE = HEAD + "G0 X20 Y50\nG0 X0 Y107.132 A-19.2 C97\nG0 Z-230\nM2\n"
 COLLIDE_FEED = HEAD + "G0 X20 Y50\nG0 X0 Y107.132 A-19.2 C97\nG1 Z-230 F3000\nM2\n"
 # Long moves far from everything.
 SWING = HEAD + "G0 X100 Y-80 Z40\nG0 X-100 Y80 A-20 C90\n" * 4 + "G0 X0 Y0 Z50 A0 C0\nM2\n"
+
+
+# The tool of the collision stands about a millimetre above the plate. Down it may go on only as far
+# as the guard's reach of a jog, and then not at all. The other way, another joint, or more speed
+# than the machine file promises stop; up it comes out.
+AFTER = HEAD + "G0 Z40\nG0 X100 Y-80 A0 C0\nM2\n"
+UP = {"joint": 2, "way": 8, "speed": 4}
+JOGS = [({"joint": 2, "way": -5, "speed": 4}, "stopped"),
+        ({"joint": 2, "way": -1, "speed": 4}, "refused"), (UP | {"command": -1}, "stopped"),
+        (UP | {"also": 0}, "stopped"), (UP | {"speed": 6}, "stopped"), (UP, "done")]
+# The longer tool above, and the short one where only that one has room.
+TOOLS = HEAD + "G0 X20 Y50\nT2 M6\nG0 X-20 Z-60\nG0 X20 Z40\nT1 M6\nG0 Z-220\nG0 Z40\nM2\n"
 
 
 # With LinuxCNC's kinematics for the tool's tip: tilted above the plate, and into it.
@@ -73,19 +85,25 @@ def scenarios(source):
         "late": (SWING, True, {"events": [{"do": "late", "after_s": 1.5}]}),
         "feed": (SWING, False, {"events": feed}),
         "unguarded": (COLLIDE, False, {}),
+        "jog": (COLLIDE, True, {"jogs": [order for order, _ in JOGS], "after": AFTER}),
+        "tool": (TOOLS, False, {}),
+        "tool_collide": (TOOLS.replace("Z40\nT1 M6", "Z40"), True, {}),
+        "tool_in_motion": (SWING, True, {"events": [{"do": "tool_change", "after_s": 1.5}]}),
+        "tool_unknown": (TOOLS.replace("T2 M6", "T3 M6"), False, {"limit_s": 5}),
         "xyzac_clean": (TIP_CLEAN, False, {}),
         "xyzac_collide": (TIP_COLLIDE, True, {}),
         "xyzbc_clean": (TIP_CLEAN.replace("A", "B"), False, {}),
         "xyzbc_collide": (TIP_COLLIDE.replace("A", "B"), True, {}),
         "clean_whole": (clean_program(source, None), False, {}),
-        **{f"xyzac_demo_{n}": (demo(f"xyzac_switchkins_test_{n}"), True, {}) for n in (1, 2)},
+        **{f"xyzac_demo_{n}": (demo(f"xyzac_switchkins_test_{n}"), True, {}) for n in (1, 2, 3)},
         **{f"xyzac_demo_{n}_raised":
-           (demo(f"xyzac_switchkins_test_{n}", "G10 L2 P1 Z60\n"), False, {}) for n in (1, 2)},
+           (demo(f"xyzac_switchkins_test_{n}", "G10 L2 P1 Z60\n"), False, {}) for n in (1, 2, 3)},
     }
 
 
-USUAL = ["clean", "collide", "collide_feed", "kill", "kill_approach", "late", "feed",
-         "unguarded", "xyzac_clean", "xyzac_collide", "xyzbc_clean", "xyzbc_collide"]
+# At most three minutes; the others run by hand, by name.
+USUAL = ["clean", "collide", "kill_approach", "late", "unguarded", "jog", "tool", "tool_collide",
+         "tool_unknown", "xyzac_clean"]
 
 
 def tip_error(rows, machine):
@@ -110,30 +128,47 @@ def tip_error(rows, machine):
     return worst, count
 
 
-def stop_facts(rows, stopping):
-    """Of the last ramp: its periods beside the longest that the promise allows; the same from the
+def stop_facts(rows, stopping, period_s=PERIOD_S):
+    """Of each ramp: its periods beside the longest that the promise allows; the same from the
     sample at which the last permit was used; and whether a joint turned round."""
     ends = [i for i in range(2, len(rows)) if rows[i][7] and not rows[i - 1][7]]
-    if not ends:
-        return None
-    first = ends[0]
+    return [ramp_facts(rows, stopping, first, period_s) for first in ends]
+
+
+def ramp_facts(rows, stopping, first, period_s):
     before = [rows[first - 1][1 + j] - rows[first - 2][1 + j] for j in range(5)]
     rest = first
     while rest < len(rows) and rows[rest][1:6] != rows[rest - 1][1:6]:
         rest += 1
-    ramp = max(abs(step) / PERIOD_S / d for step, d in zip(before, stopping)) / PERIOD_S
+    ramp = max(abs(step) / period_s / d for step, d in zip(before, stopping)) / period_s
     # While no permit comes, the time that is left falls by a period each period.
     used = first - 1
     while used > 0 and rows[used][8] < rows[used - 1][8]:
         used -= 1
     turned = any((rows[i][1 + j] - rows[i - 1][1 + j]) * before[j] < -1e-12
                  for i in range(first, rest) for j in range(5))
+    left = rows[used][8] / 1e6 / period_s
     return {"at": rows[first][0], "turned": turned,
-            "speeds": [round(abs(step) / PERIOD_S, 1) for step in before],
+            "speeds": [round(abs(step) / period_s, 1) for step in before],
             "periods": rest - first + 1, "promised": round(REACTION_PERIODS + ramp + 1, 1),
-            "permit_left": rows[used][8] / 1000, "from_last_permit": rest - used,
-            "from_last_permit_promised": round(rows[used][8] / 1000 + REACTION_PERIODS + ramp + 1,
-                                               1)}
+            "permit_left": round(left, 3), "from_last_permit": rest - used,
+            "from_last_permit_promised": round(left + REACTION_PERIODS + ramp + 1, 1)}
+
+
+def check_jogs(said):
+    """Each jog ends as it has to, and a program runs afterwards."""
+    jogs = said.get("jogs", [])
+    ended, wanted = [jog.get("ended") for jog in jogs], [one for _, one in JOGS]
+    faults = []
+    if ended != wanted:
+        return [f"jog: found {ended}, expected {wanted}"]
+    if jogs[2]["to"] != jogs[2]["from"] or jogs[2]["cause"] != str(CAUSE_PERSON):
+        faults.append(f"jog: moved against the selected way: {jogs[2]}")
+    if abs(jogs[-1]["to"] - jogs[-1]["from"] - UP["way"]) > 1e-3:
+        faults.append(f"jog: not where it was to end: {jogs[-1]}")
+    if said.get("after") != "done":
+        faults.append(f"jog: the program afterwards: {said.get('after')}, expected done")
+    return faults
 
 
 def check(name, is_stopped, said, rows, overruns, judged, facts):
@@ -150,20 +185,26 @@ def check(name, is_stopped, said, rows, overruns, judged, facts):
         return faults
     if not said["armed"] or "pins" not in said:
         return faults + [f"{name}: not armed"]
-    wanted = "stopped" if is_stopped else "done"
+    wanted = "stopped" if is_stopped else "limit" if name == "tool_unknown" else "done"
     if said["ended"] != wanted:
         faults.append(f"{name}: found {said['ended']}, expected {wanted}")
-    if judged["stops"]:
+    if name == "tool_unknown":  # the judge knows no such tool either
+        faults += [f"{name}: {stop}" for stop in judged["stops"] if stop["reason"] != "tool"]
+        if any(one[1:6] != other[1:6] for one, other in zip(rows, rows[1:]) if other[10] == 3):
+            faults.append(f"{name}: a joint moved with a tool that nobody knows")
+    elif judged["stops"]:
         faults.append(f"{name}: contact: {judged['stops'][0]}")
-    if is_stopped and facts is None:
-        faults.append(f"{name}: no ramp in the record")
-    if facts and is_stopped:
-        if facts["periods"] > facts["promised"]:
-            faults.append(f"{name}: {facts['periods']} periods to standstill, promised "
-                          f"{facts['promised']:.1f}")
-        if facts["from_last_permit"] > facts["from_last_permit_promised"]:
-            faults.append(f"{name}: {facts['from_last_permit']} periods from the last permit")
-        if facts["turned"]:
+    if name == "tool" and {row[10] for row in rows if row[6]} != {1, 2}:
+        faults.append("tool: the samples had other tools than the program")
+    if is_stopped != bool(facts):
+        faults.append(f"{name}: {len(facts)} ramps in the record")
+    for ramp in facts:
+        if ramp["periods"] > ramp["promised"]:
+            faults.append(f"{name}: {ramp['periods']} periods to standstill, promised "
+                          f"{ramp['promised']:.1f}")
+        if ramp["from_last_permit"] > ramp["from_last_permit_promised"]:
+            faults.append(f"{name}: {ramp['from_last_permit']} periods from the last permit")
+        if ramp["turned"]:
             faults.append(f"{name}: a joint turned round in the stop")
     if name.startswith("kill") and said["pins"]["axguard-stop.cause"] != "3":
         faults.append(f"{name}: the stop has another cause than the end of the permit")
@@ -174,6 +215,10 @@ def check(name, is_stopped, said, rows, overruns, judged, facts):
             faults.append(f"{name}: LinuxCNC's kinematics are not those of the machine file")
     if name == "late" and said["pins"]["axguard-stop.cause"] != str(CAUSE_PERSON):
         faults.append("late: the stop has another cause than the late period")
+    if name == "tool_in_motion" and said["pins"]["axguard-stop.cause"] != str(CAUSE_CHANGED):
+        faults.append(f"{name}: the stop has another cause than the change of the tool")
+    if name == "jog":
+        faults += check_jogs(said)
     if name == "collide" and not said.get("on_again"):
         faults.append("collide: not armed and switched on again after the stop")
     return faults
@@ -189,8 +234,9 @@ def run_all(given):
         program, is_stopped, more = scenarios(given.source)[name]
         machine = f"{name[:5]}-trt" if name.startswith("xyz") else "paper-trunnion"
         place = Place(folder / name, given.source, given.build, machine)
-        place.prepare(program, name != "unguarded", given.simulation_wait_us,
-                      limit_s=given.limit_s, **more)
+        guarded = name != "unguarded"
+        place.prepare(program, guarded, given.simulation_wait_us,
+                      **{"limit_s": given.limit_s, **more})
         said, output = place.run(given.limit_s + 40)
         if not said:
             print(output)
@@ -199,13 +245,18 @@ def run_all(given):
         rows, overruns = place.samples()
         # Before they are homed nobody knows where the joints are.
         armed = next((i for i, row in enumerate(rows) if row[6]), 0)
-        judged = contacts_of([row[1:6] for row in rows[armed:]], TOOL_OF[machine],
+        judged = contacts_of([row[1:6] for row in rows[armed:]],
+                             [row[10] if guarded else TOOL_OF[machine] for row in rows[armed:]],
+                             [guarded and row[9] == 2 for row in rows[armed:]],
                              place.folder / f"{machine}.yaml", place.folder, place.folder,
                              given.build / "axguard")
         facts = stop_facts(rows, STOPPING[machine])
         mine = check(name, is_stopped, said, rows, overruns, judged, facts)
         facts_of[name] = {"samples": len(rows), "overruns": overruns, "ended": said.get("ended"),
-                          "contacts": len(judged["stops"]), "stop": facts,
+                          "contacts": sum(stop["reason"] != "tool" for stop in judged["stops"]),
+                          "stops": facts, "resumed": said.get("resumed", 0),
+                          "tools": sorted({row[10] for row in rows}), "jogs": said.get("jogs"),
+                          "after": said.get("after"),
                           "pins": said.get("pins"), "errors": said.get("errors")}
         print(json.dumps({name: facts_of[name]}))
         print("\n".join(line for line in output.splitlines() if "axguard" in line))

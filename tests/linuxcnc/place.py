@@ -19,8 +19,9 @@ import time
 MODULES = pathlib.Path("/usr/lib/linuxcnc/modules")
 LOCK = "/tmp/axg-linuxcnc.lock"
 SAMPLES = "samples.txt"
-# Of the sampler, behind its own number: sample, five joints, permit-ok, stopping, left-us.
-COLUMNS = "ufffffbbu"
+# Of the sampler, behind its own number: sample, five joints, permit-ok, stopping, left-us, mode,
+# tool.
+COLUMNS = "ufffffbbuuu"
 
 
 @contextlib.contextmanager
@@ -71,7 +72,8 @@ class Place:
         shutil.copy(pathlib.Path(__file__).parent / "display.py", self.folder)
         (self.folder / "display.py").chmod(0o755)
         (self.folder / "program.ngc").write_text(program, encoding="ascii")
-        scenario.update(program=str(self.folder / "program.ngc"), guarded=guarded)
+        (self.folder / "after.ngc").write_text(scenario.pop("after", "M2\n"), encoding="ascii")
+        scenario.update(guarded=guarded)
         (self.folder / "scenario.json").write_text(json.dumps(scenario), encoding="utf-8")
         self.write_ini()
         self.write_hal(guarded, simulation_wait_us)
@@ -119,6 +121,8 @@ class Place:
                  + ("net stopping axguard-stop.stopping => sampler.0.pin.7\n" if guarded else
                     "net inhibit motion.feed-inhibit sampler.0.pin.7\n") +
                  "net left axguard-stop.left-us => sampler.0.pin.8\n"
+                 "net mode axguard-stop.mode => sampler.0.pin.9\n"
+                 "net tool axguard-stop.tool => sampler.0.pin.10\n"
                  f"loadusr halsampler -t {self.folder}/{SAMPLES}\n")
         hal.write_text(text, encoding="utf-8")
 
@@ -145,15 +149,15 @@ class Place:
         return said, output
 
     def samples(self):
-        """Rows of the record that are whole: [sample, X, Y, Z, A, C, permit, stopping, left]."""
+        """Rows of the record that are whole: [sample, X, Y, Z, A, C, permit, stopping, left, mode,
+        tool]."""
         rows, overruns = [], 0
         for line in (self.folder / SAMPLES).read_text(encoding="ascii").splitlines():
             words = line.split()
             if "overrun" in words:
                 overruns += 1
             elif len(words) == 1 + len(COLUMNS):
-                rows.append([int(words[1]), *map(float, words[2:7]), int(words[7]),
-                             int(words[8]), int(words[9])])
+                rows.append([int(words[1]), *map(float, words[2:7]), *map(int, words[7:])])
         return rows, overruns
 
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What our reader makes of frames, for comparison with another one: dbc_values FILE.dbc, then lines
-// "ID HEXBYTES" on stdin. Prints "frame ID" and "NAME VALUE" (a hexadecimal float) for each signal
-// that the frame carries and that can be used.
+// "ID HEXBYTES" on stdin, the id as the file writes it. Prints "frame ID" and "NAME VALUE" (a
+// hexadecimal float) for each signal that the frame carries and that can be used.
 #include <cstdio>
 #include <fstream>
 #include <iostream>
@@ -9,6 +9,7 @@
 #include <string>
 
 #include "config/can/dbc_signal.hpp"
+#include "core/machine/can_id.hpp"
 #include "firmware_if/can/can_frame.hpp"
 #include "firmware_if/protocol/wire.hpp"
 
@@ -19,7 +20,7 @@ void print_frame(const axg::Dbc& dbc, std::uint32_t id, const axg::CanFrame& fra
     for (const axg::DbcMessage& message : dbc.messages) {
         for (const axg::DbcSignal& signal : message.signals) {
             axg::CanSignal wire;
-            if (message.id != id || message.is_extended ||
+            if (axg::wire_id(message.id, message.is_extended) != id ||
                 !axg::to_can_signal(message, signal, wire).empty()) {
                 continue;
             }

@@ -14,6 +14,7 @@ from made_parts import table, with_parts
 OWN_TABLE = ("axis", "linear_axis", "rotary_axis", "mesh", "shape", "section", "body", "tool",
              "pair", "exclusion", "signal", "drive", "can")
 LARGE = {"can": ["ids"]}  # parts of a table that have one of their own
+IDENTIFIER_MAXIMA = (0x7FE, 0x7FF, 0x1FFFFFFF, 0x3FFFFFFF)
 SIMPLE = {"integer": "integer", "number": "number", "string": "text", "boolean": "switch"}
 
 
@@ -56,7 +57,7 @@ class Schema:
         if kind == "object":
             inner = rule.get("patternProperties")
             return "map of " + self.value(next(iter(inner.values()))) if inner else "map"
-        if rule.get("maximum") in (0x7FE, 0x7FF) or "Data ID" in rule.get("description", ""):
+        if rule.get("maximum") in IDENTIFIER_MAXIMA or "Data ID" in rule.get("description", ""):
             return hexadecimal(rule)
         if "minimum" in rule:
             shown = number if kind == "integer" else decimal

@@ -110,6 +110,49 @@ TEST(CInterfaceSamples, AreTheSameGuardAsTheirFrames) {
     EXPECT_TRUE(of_samples.words == of_frames.words);
 }
 
+// For a guard on another computer: the frames carry what the sample says, and their receiver has
+// it.
+TEST(CInterfaceSamples, EncodedTheyAreTheFramesOfABoard) {
+    const Machine machine = test::load_paper_machine().machine;
+    const std::vector<axg_sample> samples = samples_of(machine, demo_frames());
+    const test::CHost host(test::c_options(AXG_MODE_CONTACT));  // not started, and never will be
+    std::vector<CanFrame> sent;
+    std::array<axg_frame, AXG_SAMPLE_FRAMES_MAX> frames{};
+    std::uint32_t count = 0;
+    for (const axg_sample& sample : std::span(samples).first(500)) {
+        ASSERT_EQ(axg_guard_encode_sample(host.guard, &sample, frames.data(), AXG_SAMPLE_FRAMES_MAX,
+                                          &count),
+                  AXG_STATUS_OK);
+        ASSERT_GT(count, 1U);
+        for (const axg_frame& frame : std::span(frames).first(count)) {
+            CanFrame out;
+            out.time_us = sample.latched_us;
+            out.id = frame.id;
+            out.fd = (frame.flags & AXG_FRAME_FD) != 0;
+            out.length_bytes = frame.length_bytes;
+            std::copy(std::begin(frame.data), std::end(frame.data), out.data.begin());
+            sent.push_back(out);
+        }
+    }
+    const std::vector<axg_sample> heard = samples_of(machine, sent);
+    ASSERT_EQ(heard.size(), 500U);
+    for (std::size_t i = 0; i < heard.size(); ++i) {
+        ASSERT_EQ(heard[i].number % 240, samples[i].number % 240);
+        ASSERT_EQ(heard[i].tool, samples[i].tool);
+        ASSERT_EQ(heard[i].mode, samples[i].mode);
+        for (std::uint32_t axis = 0; axis < heard[i].axis_count; ++axis) {
+            ASSERT_NEAR(heard[i].position[axis], samples[i].position[axis], 1e-9) << i;
+        }
+    }
+    EXPECT_EQ(axg_guard_encode_sample(host.guard, samples.data(), frames.data(), 1, &count),
+              AXG_STATUS_BAD_CALL);
+    axg_sample bad = samples[0];
+    bad.axis_count = 4;
+    EXPECT_EQ(
+        axg_guard_encode_sample(host.guard, &bad, frames.data(), AXG_SAMPLE_FRAMES_MAX, &count),
+        AXG_STATUS_BAD_CALL);
+}
+
 TEST(CInterfaceSamples, TheStateSaysWhatWasProven) {
     const Machine machine = test::load_paper_machine().machine;
     const std::vector<axg_sample> samples = samples_of(machine, demo_frames());
@@ -196,6 +239,10 @@ TEST(CInterfaceSamples, TheTermsAreThoseOfTheMachineFile) {
     EXPECT_DOUBLE_EQ(terms.axes[3].stopping, 500);
     EXPECT_DOUBLE_EQ(terms.axes[0].jerk, 50000);
     EXPECT_EQ(terms.axes[4].is_endless, 1);
+    ASSERT_TRUE(machine.guard.jog.is_promised);
+    EXPECT_DOUBLE_EQ(terms.axes[0].jog_speed, machine.guard.jog.speed_mm_s);
+    EXPECT_DOUBLE_EQ(terms.axes[3].jog_acceleration,
+                     machine.guard.jog.acceleration_rad_s2 * 180 / std::numbers::pi);
 }
 
 // A program that was compiled with the version before: its axg_state ends where it did.

@@ -92,14 +92,38 @@ class ForeignFrames : public testing::TestWithParam<const char*> {
     std::string paper = folder + "/paper-trunnion.yaml";
 };
 
+/// With Linear and Rest, X and C under identifiers of 29 bits; one has a number of 11 bits too.
+std::string extended_dbc() {
+    std::string text = kDbc;
+    text.replace(text.find("BO_ 385"), 7, "BO_ 2566848897");  // 0x80000000 + 0x18FF0181
+    text.replace(text.find("BO_ 386"), 7, "BO_ 2147484033");  // 0x80000000 + 0x181
+    return text;
+}
+std::string extended_drives() {
+    std::string text = kDriveSection;
+    text.replace(text.find("0x183"), 5, "0x38FF0183");
+    text.replace(text.find("0x187"), 5, "0x20000183");
+    return text;
+}
+
 TEST_P(ForeignFrames, EndWithTheVerdictOfOurOwn) {
     (void)shop.write("board.dbc", kDbc);
+    (void)shop.write("extended.dbc", extended_dbc());
+    std::string extended = kDbcSection;
+    extended.replace(extended.find("board.dbc"), 9, "extended.dbc");
     const Json ours = judged("ours", "", GetParam());
     for (const auto& [name, section] :
-         {std::pair{"dbc", kDbcSection}, std::pair{"drives", kDriveSection}}) {
+         {std::pair{"dbc", std::string{kDbcSection}},
+          std::pair{"drives", std::string{kDriveSection}}, std::pair{"dbc", extended},
+          std::pair{"drives", extended_drives()}}) {
         const Json theirs = judged(name, section, GetParam());
         ASSERT_EQ(theirs["stop_count"], 1) << name;
         EXPECT_EQ(theirs["samples_lost"], 0) << name;
+        const bool is_extended = section.find("extended") != std::string::npos ||
+                                 section.find("0x38FF0183") != std::string::npos;
+        const std::string log = test::content_of(shop.file(std::string(name) + ".log"));
+        EXPECT_EQ(log.find(" 18FF018") != std::string::npos, is_extended) << name;
+        EXPECT_EQ(log.find(" 0000018") != std::string::npos, is_extended) << name;
         const Json& stop = theirs["stops"][0];
         const Json& wanted = ours["stops"][0];
         EXPECT_EQ(stop["reason"], wanted["reason"]) << name;
@@ -206,6 +230,11 @@ TEST_F(ForeignFrames, CheckSaysWhereTheAxesStand) {
         << shop.out;
     EXPECT_NE(shop.out.find("0x182, 12 bytes, page 3"), std::string::npos) << shop.out;
     EXPECT_NE(shop.out.find("counts 0 to 14"), std::string::npos);
+    (void)shop.write("board.dbc", extended_dbc());
+    ASSERT_EQ(shop.run("check dbc.yaml --engine cpu --mesh-root " + folder), kExitClean)
+        << shop.err;
+    EXPECT_NE(shop.out.find("Y position     0x18FF0181,  8 bytes"), std::string::npos) << shop.out;
+    EXPECT_NE(shop.out.find("0x00000181, 12 bytes, page 3"), std::string::npos) << shop.out;
     ASSERT_EQ(shop.run("check drives.yaml --engine cpu --json --mesh-root " + folder), kExitClean);
     EXPECT_EQ(Json::parse(shop.out)["guard"]["obeyed_by"], "board");
     EXPECT_FALSE(Json::parse(shop.out)["guard"].contains("not_obeyed"));
@@ -214,6 +243,8 @@ TEST_F(ForeignFrames, CheckSaysWhereTheAxesStand) {
     EXPECT_EQ(frames["frames_a_sample"], 6);
     ASSERT_EQ(frames["signals"].size(), 11U);
     EXPECT_EQ(frames["signals"][0]["axis"], "X");
+    EXPECT_EQ(frames["signals"][0]["id"], 0x183);
+    EXPECT_EQ(frames["signals"][0]["extended"], false);
     EXPECT_EQ(frames["signals"][0]["factor"], 0.001);
     EXPECT_EQ(frames["signals"][5]["says"], "velocity");
 }

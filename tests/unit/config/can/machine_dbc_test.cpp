@@ -51,10 +51,6 @@ TEST(MachineDbc, EveryRefusalNamesBothPlaces) {
              Case{"X: Linear.X", "X: Pages.Deep",
                   "m:32: can.axes.X: invalid value (found a signal of extended multiplexing "
                   "(board.dbc:27), expected another signal). See docs/reference/protocol.md.\n"},
-             Case{"X: Linear.X", "X: Extended.E",
-                  "m:32: can.axes.X: invalid value (found a signal of a 29-bit identifier, or "
-                  "identifier 0 (board.dbc:30), expected another signal). See "
-                  "docs/reference/protocol.md.\n"},
              Case{"X: Linear.X", "X: Tilt.C",
                   "m:32: can.axes.X: invalid value (found the unit \"\" (board.dbc:21), expected "
                   "the unit stated here, such as {signal: Tilt.C, unit: mm}).\nm:34: can.axes.C: "
@@ -104,6 +100,35 @@ TEST(MachineDbc, EveryRefusalNamesBothPlaces) {
             EXPECT_FALSE(faults.empty()) << said;
         }
     }
+}
+
+// Bit 31 of a DBC identifier marks 29 bits: 129 of 11 bits is another message.
+TEST(MachineDbc, IdentifiersOf29BitsAreOthersThanOf11) {
+    const std::string both = with(kBoardDbc, "BO_ 385 Linear", "BO_ 129 Linear");
+    const std::string text = with(dbc_machine(), "X: Linear.X", "X: Extended.E");
+    Machine machine;
+    ASSERT_EQ(faults_with_file(text, both, machine), "");
+    EXPECT_EQ(check_layout(machine), LayoutStatus::ok) << to_text(check_layout(machine));
+    EXPECT_EQ(machine.can.signals[0].id, 0x80000081U);
+    EXPECT_EQ(machine.can.signals[3].id, 129U);
+    const AxisFrameSet set = make_frame_set(machine);
+    EXPECT_EQ(set.frame_count, 3U);
+    // An identifier of ours has 11 bits, and none of 29 takes its place.
+    const std::string sync = with(text, "  file: board.dbc\n",
+                                  "  file: board.dbc\n"
+                                  "  ids: {emergency: 0x081}\n");
+    EXPECT_EQ(faults_with_file(sync, kBoardDbc), "");
+    EXPECT_EQ(faults_with_file(sync, both)
+                  .find("m:29: can.signals: invalid value (found an id "
+                        "that is also the one of emergency"),
+              0U)
+        << faults_with_file(sync, both);
+    EXPECT_EQ(faults_with_file(text, with(kBoardDbc, "2147483777", "2684354560")),
+              "board.dbc:29: BO_: invalid value (found 2684354560, expected an identifier up to "
+              "2047, or one of 29 bits with bit 31 set).\n");
+    EXPECT_EQ(faults_with_file(text, with(kBoardDbc, "2147483777", "2147483648")),
+              "m:32: can.axes.X: invalid value (found a signal of identifier 0 (board.dbc:30), "
+              "expected another signal). See docs/reference/protocol.md.\n");
 }
 
 TEST(MachineDbc, FaultsOfTheFileStandAtItsOwnLines) {

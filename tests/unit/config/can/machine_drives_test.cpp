@@ -176,13 +176,41 @@ TEST(MachineDrives, EveryRefusalSaysWhatToDo) {
     }
 }
 
+// Bit 29 of a COB-ID marks 29 bits, in object 0x1800 and so in both files.
+TEST(MachineDrives, ProcessDataMayHaveIdentifiersOf29Bits) {
+    const auto written = [](const std::string& cob_id) {
+        return with(drive_machine(), "{cob_id: 0x183,", "{cob_id: " + cob_id + ",");
+    };
+    Machine machine;
+    ASSERT_EQ(faults_with_file(written("0x38FF0183"), kDriveEds, machine), "");
+    EXPECT_EQ(check_layout(machine), LayoutStatus::ok) << to_text(check_layout(machine));
+    EXPECT_EQ(machine.can.signals[0].id, 0x98FF0183U);
+    EXPECT_EQ(faults_with_file(written("0x20000184"), kDriveEds), "") << "0x184 is A's, of 11 bits";
+    const std::string wanted =
+        ", expected 0x001 to 0x7FF, or 0x20000000 plus an identifier of 29 bits).\n";
+    for (const std::string bad : {"0x800", "0x20000000", "0x1FFFFFFF"}) {
+        EXPECT_EQ(faults_with_file(written(bad), kDriveEds),
+                  "m:33: can.drives.X.pdos[0].cob_id: invalid value (found " + bad + wanted);
+    }
+    EXPECT_EQ(faults_with_file(written("0x40000183"), kDriveEds),
+              "m:33: can.drives.X.pdos[0].cob_id: invalid value (found \"0x40000183\", expected an "
+              "integer from 0x001 to 0x3FFFFFFF).\n");
+    const std::string eds = with(kDriveEds, "= 0x380 + $NodeID", "= 0x38FF0385");
+    ASSERT_EQ(faults_with_file(drive_machine(), eds, machine), "");
+    bool has_id = false;
+    for (const CanSignal& signal : machine.can.signals) {
+        has_id = has_id || signal.id == 0x98FF0385U;
+    }
+    EXPECT_TRUE(has_id);
+}
+
 TEST(MachineDrives, APositionThatIsNotLatchedBySyncIsRefused) {
     const std::string eds =
         with(kDriveEds, "[1802sub2]\nDefaultValue=0x1", "[1802sub2]\nDefaultValue=254");
     EXPECT_EQ(faults_with_file(drive_machine(), eds),
               "m:37: can.drives.C.file: invalid value (found TPDO3 with the position, of "
-              "transmission type 254 (drive.dcf:29), expected 11 bits, and type 1: latched and "
-              "sent at every SYNC).\n");
+              "transmission type 254 (drive.dcf:29), expected type 1: latched and sent at every "
+              "SYNC).\n");
 }
 
 TEST(EdsFile, SaysWhatIsActiveAndNothingElse) {

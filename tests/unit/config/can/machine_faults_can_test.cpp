@@ -272,6 +272,29 @@ TEST(MachineFaultsSignals, SignalOutsideItsFrameIsRefused) {
               "bytes, expected start and length inside can.signal_frame_bytes).\n");
 }
 
+TEST(MachineFaultsSignals, AnIdentifierOf29BitsIsWrittenSo) {
+    const auto x_id = [](const std::string& keys) {
+        return with(with_signals(), "X: {id: 0x181,", "X: {" + keys + ",");
+    };
+    Machine machine, plain;
+    ASSERT_TRUE(parse_machine(x_id("id: 0x18FF0181, extended: true"), "m", machine).empty());
+    EXPECT_EQ(machine.can.signals[0].id, 0x98FF0181U);
+    ASSERT_TRUE(parse_machine(x_id("id: 0x181, extended: true"), "m", machine).empty());
+    ASSERT_TRUE(parse_machine(x_id("id: 0x181, extended: false"), "m", plain).empty());
+    EXPECT_EQ(plain.can.signals[0].id, 0x181U);
+    EXPECT_NE(effective_text(machine), effective_text(plain));
+    EXPECT_EQ(faults_of(x_id("id: 0x103, extended: true")), "") << "not the permit's";
+    EXPECT_EQ(faults_of(x_id("id: 0x800")),
+              "m:31: can.signals.X.id: invalid value (found \"0x800\", expected an integer from "
+              "0x001 to 0x7FF, or extended: true for 29 bits).\n");
+    EXPECT_EQ(faults_of(x_id("id: 0x20000000, extended: true")),
+              "m:31: can.signals.X.id: invalid value (found \"0x20000000\", expected an integer "
+              "from 0x001 to 0x1FFFFFFF).\n");
+    EXPECT_EQ(faults_of(x_id("id: 0x181, extended: 1")),
+              "m:31: can.signals.X.extended: invalid value (found \"1\", expected one of "
+              "false, true).\n");
+}
+
 TEST(MachineFaultsSignals, OverlappingSignalsAreRefused) {
     EXPECT_EQ(faults_of(with(with_signals(), "start: 39", "start: 31")),
               "m:33: can.signals.C.start: invalid value (found bits that axis A uses in the same "

@@ -75,6 +75,45 @@ TEST(SignalReceiver, WhatADbcDescribesArrivesAsItWasSent) {
     }
 }
 
+// Tilt is 0x181 of 29 bits, and Linear is 0x181 of 11.
+TEST(SignalReceiver, IdentifiersOf29BitsAreOthersThanOf11) {
+    Machine machine;
+    ASSERT_EQ(faults_with_file(dbc_machine(),
+                               with(with(kBoardDbc, "BO_ 386 Tilt", "BO_ 2147484033 Tilt"),
+                                    "SIG_VALTYPE_ 386", "SIG_VALTYPE_ 2147484033"),
+                               machine),
+              "");
+    AxisEncoder encoder(machine);
+    AxisReceiver receiver(machine);
+    Heard heard;
+    for (std::uint64_t k = 0; k < 40; ++k) {
+        std::vector<CanFrame> frames = frames_of(encoder, snapshot_of(k));
+        ASSERT_EQ(frames.size(), 2U);
+        EXPECT_FALSE(frames[0].extended);
+        EXPECT_TRUE(frames[1].extended);
+        EXPECT_EQ(frames[1].id, 0x181U);
+        CanFrame other = frames[1];  // the same number and low bits, of a board that is not ours
+        other.id |= 0x18FF0000U;
+        frames.push_back(other);
+        listen(receiver, frames, heard);
+    }
+    ASSERT_EQ(heard.snapshots.size(), 40U);
+    for (std::uint64_t k = 0; k < 40; ++k) {
+        EXPECT_NEAR(heard.snapshots[k].position[0], snapshot_of(k).position[0], 0.51e-4);
+        EXPECT_NEAR(heard.snapshots[k].position[2], snapshot_of(k).position[2], 1e-9);
+    }
+    EXPECT_EQ(receiver.counters().of(ReceiverFault::extended_id), 40U);
+    EXPECT_EQ(heard.faults.size(), 40U);
+    // Of the other kind it is no frame of ours at all.
+    std::vector<CanFrame> swapped = frames_of(encoder, snapshot_of(40));
+    swapped[0].extended = true;
+    EXPECT_EQ(slot_of(encoder.frame_set(), swapped[0]), 1U);
+    swapped[1].extended = false;
+    EXPECT_EQ(slot_of(encoder.frame_set(), swapped[1]), 0U);
+    swapped[1].id |= 0x80000000U;
+    EXPECT_EQ(slot_of(encoder.frame_set(), swapped[1]), 2U) << "bit 31 is no part of a number";
+}
+
 TEST(SignalReceiver, StatesShareTheirBitsAndMeanOneValueEach) {
     for (const auto& [state, mode] :
          {std::pair{0, kModeStandstill}, std::pair{1, kModeMoving}, std::pair{2, kModeToolChange},
