@@ -104,6 +104,9 @@ static axg_status play(axg_guard* guard, FILE* trace, axg_state* state) {
             break;
         }
     }
+    if (state->permits == 0) {
+        printf("never armed: at the beginning of a trace the axes have to stand for 100 ms\n");
+    }
     printf("%" PRIu64 " samples, %" PRIu64 " permits, %" PRIu64 " stop frames\n", state->snapshots,
            state->permits, state->stops);
     return AXG_STATUS_OK;
