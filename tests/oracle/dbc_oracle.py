@@ -100,6 +100,17 @@ def ours(program, path, frames):
     return answers
 
 
+def cantools_if_there():
+    """The module; None, and said why the test is skipped: it is not installed."""
+    try:
+        import cantools
+    except ImportError:
+        print("skipped: no python module cantools "
+              "(pip install --require-hashes -r tests/oracle/requirements.txt)")
+        return None
+    return cantools
+
+
 def wire_id(message):
     return message.frame_id | (EXTENDED if message.is_extended_frame else 0)
 
@@ -136,11 +147,8 @@ def compare(program, path, database, lengths, chance):
 
 
 def main():
-    try:
-        import cantools
-    except ImportError:
-        print("skipped: no python module cantools "
-              "(pip install --require-hashes -r tests/oracle/requirements.txt)")
+    cantools = cantools_if_there()
+    if cantools is None:
         return SKIPPED
     program, files = sys.argv[1], sys.argv[2:]
     if not os.path.exists(program):

@@ -12,7 +12,8 @@ import subprocess
 import sys
 import tempfile
 
-SKIPPED = 77
+from dbc_oracle import SKIPPED, cantools_if_there
+
 SAMPLES = 300
 # 0x181 of 11 bits, of 29 bits, and a number that only 29 bits have.
 DBC = """VERSION ""
@@ -84,11 +85,8 @@ def faults_of(sent):
 
 
 def main():
-    try:
-        import cantools
-    except ImportError:
-        print("skipped: no python module cantools "
-              "(pip install --require-hashes -r tests/oracle/requirements.txt)")
+    cantools = cantools_if_there()
+    if cantools is None:
         return SKIPPED
     axguard, source = sys.argv[1], pathlib.Path(sys.argv[2])
     machines = source / "config/machines"
