@@ -13,8 +13,9 @@ import signal
 import subprocess
 import sys
 import tempfile
+import time
 
-LIMIT_S = int(os.environ.get("AXG_VM_LIMIT_S", "440"))  # a record takes longer than a test
+LIMIT_S = int(os.environ.get("AXG_VM_LIMIT_S", "840"))  # a record takes longer than a test
 MODULES = ["can", "can-raw", "can-dev", "vcan", "vxcan", "slcan", "sch_netem", "overlay"]
 
 
@@ -44,14 +45,29 @@ def memory_folder():
 
 def settle(cpu):
     """One processor: user-mode Linux switches between processes at every system call, which is ten
-    times slower between two. Before other programs, where that is allowed: the guest's clock is the
-    host's, so a guest that waits for a processor is a machine that stood still. A guest that is
+    times slower between two. Before other programs, where that is allowed: its clock counts the
+    processor time that it had (uml_shim.cpp), so a guest that waits takes longer. A guest that is
     never idle stands still too: of each second the host keeps 50 ms from programs in real time."""
     os.sched_setaffinity(0, {cpu})
     try:
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(10))
     except OSError:
         pass
+
+
+def wait_for(run):
+    """Like a busy host: stops it for AXG_VM_FROZEN_S [default: 0] after each half second."""
+    frozen_s = float(os.environ.get("AXG_VM_FROZEN_S", "0"))
+    end = time.monotonic() + LIMIT_S
+    while frozen_s > 0 and time.monotonic() < end:
+        try:
+            run.wait(0.5)
+            return
+        except subprocess.TimeoutExpired:
+            run.send_signal(signal.SIGSTOP)
+            time.sleep(frozen_s)
+            run.send_signal(signal.SIGCONT)
+    run.wait(max(0.0, end - time.monotonic()))
 
 
 def main():
@@ -80,7 +96,7 @@ def main():
                 env={"PATH": os.environ["PATH"], "LD_PRELOAD": shim, "TMPDIR": memory_folder(),
                      "HOME": out})
             try:
-                run.wait(LIMIT_S)
+                wait_for(run)
             except subprocess.TimeoutExpired:
                 print(f"boot.py: the guest did not end within {LIMIT_S} s")
             finally:

@@ -95,6 +95,18 @@ def held():
     expect(HEARTBEAT in ids, "it lives")
 
 
+def busy_host():
+    """The host stops the whole guest again and again, for longer than a permit lasts (boot.py): the
+    guest's clock stops with it, and permits go on."""
+    board, guard = armed()
+    bus = Bus()
+    time.sleep(3)
+    expect(bus.count(PERMIT) > 500, *guard.lines)
+    expect(not guard.has_stopped(), *guard.lines)
+    expect(guard.end()[0] == 0, *guard.lines)
+    board.end()
+
+
 def signal_storm():
     """Every signal that a guard may get while it runs, thousands of them, and stops too short for
     the board to notice, each of which ends what a thread was waiting in: permits go on."""
@@ -263,11 +275,9 @@ def frames_of_this_host():
     expect(guard.end()[0] == 12, *guard.lines)
 
 
-SCENARIOS = {"held": held, "signal_storm": signal_storm, "down_and_up": down_and_up,
-             "removed": removed, "two_instances": two_instances, "foreign_stop": foreign_stop,
-             "foreign_frames": foreign_frames, "small_buffer": small_buffer,
-             "small_buffer_at_the_start": small_buffer_at_the_start,
-             "frames_of_this_host": frames_of_this_host}
+SCENARIOS = {scenario.__name__: scenario for scenario in
+             (held, busy_host, signal_storm, down_and_up, removed, two_instances, foreign_stop,
+              foreign_frames, small_buffer, small_buffer_at_the_start, frames_of_this_host)}
 
 if sys.argv[1] == "kills":
     attempt(kills, int(os.environ.get("AXG_VM_KILLS", "5")))

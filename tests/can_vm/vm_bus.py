@@ -20,15 +20,16 @@ PERMIT, TWIN, STOP, EMERGENCY, HEARTBEAT = 0x103, 0x104, 0x001, 0x082, 0x702
 WORD_STOP, WORD_STOP_TWIN = "word stop", "its twin"
 SKIPPED = 77
 LIMIT_S = float(os.environ["AXG_VM_LIMIT_S"])  # boot.py ends the guest then
-# A guest's system call takes 15 us and its host may be busy: ten periods of 5 ms until the permit
-# runs out. At 1 kHz the guest spends longer in calls than a period lasts.
+# A guest's system call takes 15 us: ten periods of 5 ms until the permit runs out. At 1 kHz the
+# guest spends longer in calls than a period lasts.
 PERIOD_US = int(os.environ.get("AXG_VM_PERIOD_US", "5000"))
-# What a host without a free processor looks like from inside. Never what a test is about.
+# What a guest that stood still looks like from inside: what its clock counts as its own may be
+# another's, under a hypervisor. Never what a test is about.
 BUSY = ("stopped: gap", "input: stale", "input: heartbeat_lost", "stopped: silence",
         "stopped: flapping", "stopped: engine", "input: loss_limit", "SYNC ended later")
 
 
-# What a guest cannot be fit in: its clock is its host's. Memory and the known answers it can.
+# What a guest cannot be fit in: its clock is not real. Memory and the known answers it can.
 UNFIT = ("--admit-seconds", "0.05", "--admit-unfit", "system,latency,engine,cycle")
 
 RUNNING = []  # every board and guard, so that none of them outlives its scenario
