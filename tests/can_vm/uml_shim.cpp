@@ -4,11 +4,12 @@
 // 11008 bytes) refuses so short a write, and the guest panics at its first process. The rest is
 // filled in from the thread itself; the header that says which parts count is the guest's, so what
 // is filled in has no effect.
-// Clock: the guest's is the processor time that the guest had, and of its sleeps what it asked for.
-// A busy host makes it slow, never late. Its timers are the host's and may end early by that clock:
-// the guest then sets them anew, as it does with those of any hardware.
-// Source: arch/x86/um/ptrace_64.c and arch/um/os-Linux/{time,skas/process}.c of Linux 6.1;
-// ptrace(2), PTRACE_SETREGSET; clock_getcpuclockid(3).
+// Clock: the guest's is a quarter of the processor time that the guest had, and of its sleeps what
+// it asked for. A busy host makes it slow, never late, and a guest whose system calls take 15 us
+// has time for them. Its timers are the host's and may end early by that clock: the guest then sets
+// them anew, as it does with those of any hardware. Source: arch/x86/um/ptrace_64.c and
+// arch/um/os-Linux/{time,skas/process}.c of Linux 6.1; ptrace(2), PTRACE_SETREGSET;
+// clock_getcpuclockid(3).
 #include <dlfcn.h>
 #include <elf.h>
 #include <linux/ptrace.h>
@@ -62,8 +63,20 @@ extern "C" long ptrace(int request, ...) noexcept {
 
 namespace {
 
+constexpr std::int64_t kSpeed = 4;
+
 std::int64_t ns_of(const timespec& time) {
     return time.tv_sec * std::int64_t{1'000'000'000} + time.tv_nsec;
+}
+
+timespec time_of(std::int64_t ns) {
+    return {.tv_sec = ns / 1'000'000'000, .tv_nsec = ns % 1'000'000'000};
+}
+
+int set_timer(timer_t timer, int flags, const itimerspec& wanted, itimerspec* before) {
+    static auto* const next =
+        reinterpret_cast<decltype(&timer_settime)>(dlsym(RTLD_NEXT, "timer_settime"));
+    return next(timer, flags, &wanted, before);
 }
 
 /// By the host. 0: there is no such clock, its process has ended.
@@ -86,6 +99,7 @@ Child* running = nullptr;  // is waited for
 std::int64_t children_ns = 0, slept_ns = 0, newest_ns = 0;
 std::int64_t asleep_since_ns = 0, sleep_most_ns = 0;  // 0: awake
 std::int64_t timer_ends_ns = INT64_MAX, timer_every_ns = 0;
+timer_t the_timer = nullptr;
 
 void count(Child& child) {
     const std::int64_t before = child.seen_ns;
@@ -104,7 +118,8 @@ std::int64_t read_clock() {
         // Whoever reads it is awake.
         slept_ns += std::min(host_ns(CLOCK_MONOTONIC) - since_ns, sleep_most_ns);
     }
-    newest_ns = std::max(newest_ns, host_ns(CLOCK_PROCESS_CPUTIME_ID) + children_ns + slept_ns);
+    const std::int64_t processor_ns = host_ns(CLOCK_PROCESS_CPUTIME_ID) + children_ns;
+    newest_ns = std::max(newest_ns, processor_ns / kSpeed + slept_ns);
     return newest_ns;
 }
 
@@ -114,26 +129,29 @@ extern "C" int clock_gettime(clockid_t clock, timespec* time) noexcept {
     if (clock != CLOCK_MONOTONIC) {
         return static_cast<int>(syscall(SYS_clock_gettime, clock, time));
     }
-    const std::int64_t now = read_clock();
-    *time = {.tv_sec = now / 1'000'000'000, .tv_nsec = now % 1'000'000'000};
+    *time = time_of(read_clock());
     return 0;
 }
 
+// Until it sleeps the guest works, and its time passes more slowly than the host's.
 extern "C" int timer_settime(timer_t timer, int flags, const itimerspec* wanted,
                              itimerspec* before) noexcept {
     const std::int64_t first = ns_of(wanted->it_value);
+    the_timer = timer;
     timer_ends_ns = first == 0 ? INT64_MAX : read_clock() + first;
     timer_every_ns = ns_of(wanted->it_interval);
-    static auto* const next =
-        reinterpret_cast<decltype(&timer_settime)>(dlsym(RTLD_NEXT, "timer_settime"));
-    return next(timer, flags, wanted, before);
+    const itimerspec slower{.it_interval = {}, .it_value = time_of(first * kSpeed)};
+    return set_timer(timer, flags, timer_every_ns > 0 ? *wanted : slower, before);
 }
 
 extern "C" int sigsuspend(const sigset_t* mask) {
     constexpr std::size_t kernel_mask_bytes = 8;
     const std::int64_t now = read_clock();
-    sleep_most_ns =
-        timer_every_ns > 0 ? timer_every_ns : std::max<std::int64_t>(0, timer_ends_ns - now);
+    sleep_most_ns = timer_every_ns;
+    if (timer_every_ns == 0 && timer_ends_ns != INT64_MAX) {
+        sleep_most_ns = std::max<std::int64_t>(1, timer_ends_ns - now);
+        set_timer(the_timer, 0, {.it_interval = {}, .it_value = time_of(sleep_most_ns)}, nullptr);
+    }
     asleep_since_ns = host_ns(CLOCK_MONOTONIC);
     const long result = syscall(SYS_rt_sigsuspend, mask, kernel_mask_bytes);
     read_clock();

@@ -123,6 +123,7 @@ def watch_a_guard():
     bus = Bus(only=(PERMIT,))
     for _ in range(3):
         watch.provoke()
+    time.sleep(0.1)
     guard.check_busy()
     expect(bus.count(PERMIT) > 10, "permits while it is watched", *guard.lines)
     expect(not guard.has_stopped(), *guard.lines)
