@@ -56,8 +56,9 @@ StopCertificate::StopCertificate(const Machine& machine, const StopOptions& opti
       arena_(std::move(arena)) {
     stride_ = history_stride(machine.can.sample_us * 1e-6);
     samples_ = machine.can.permit_samples.least;
-    samples_try_ = samples_next_ =
+    ladder_.samples =
         keeps_cap() ? samples_work(machine.can.permit_samples) : machine.can.permit_samples.most;
+    ladder_next_ = ladder_;
     limit_rules_ = limit_rules(machine, options_.count);
     speed_bound_.fill(std::numeric_limits<double>::infinity());
 }
@@ -449,10 +450,9 @@ void StopCertificate::take_wider() noexcept {
     }
     const PermitSamples range = machine_->can.permit_samples;
     is_longer_proven_ = are_all_proven;
-    samples_ = are_all_proven ? samples_try_ : range.least;
+    samples_ = are_all_proven ? ladder_.samples : range.least;
     if (!keeps_cap()) {
-        samples_next_ = are_all_proven ? samples_above(range, samples_try_)
-                                       : samples_below(range, samples_try_);
+        ladder_next_ = ladder_.next(range, are_all_proven);
     }
 }
 
@@ -463,7 +463,7 @@ void StopCertificate::prove(const Engine& engine,
     is_path_known_ = is_longer_proven_ = false;
     const PermitSamples range = machine_->can.permit_samples;
     samples_ = range.least;
-    samples_next_ = samples_try_;
+    ladder_next_ = ladder_;
     status_ = judge_snapshot(*machine_, snapshot_, tool_);
     if (status_ == SnapshotStatus::ok && (has_left_path_ || has_left_jog_)) {
         status_ = has_left_jog_ ? SnapshotStatus::left_jog : SnapshotStatus::left_path;
@@ -476,7 +476,7 @@ void StopCertificate::prove(const Engine& engine,
         return;
     }
     has_wider_ =
-        tries_longer(range) && bound_box(samples_try_, asks_raise_ ? raised_bound_ : speed_bound_);
+        tries_longer(range) && bound_box(ladder_.samples, asks_raise_ ? raised_bound_ : speed_bound_);
     const bool is_wider_path = is_path_known_;
     wider_box_ = box_;
     bool is_known = bound_box(range.least, speed_bound_);
@@ -561,7 +561,7 @@ void StopCertificate::test_containment(const ContainmentTest& containment_test) 
 void StopCertificate::keep() noexcept {
     is_limit_judged_ = true;
     asks_raise_ = false;
-    samples_try_ = samples_next_;
+    ladder_ = ladder_next_;
     std::uint32_t next = 0;
     for (std::uint32_t i = 0; i < slot_count_; ++i) {
         const bool is_queried = next < proof_count_ && queried_[next] == i;

@@ -231,8 +231,8 @@ class StopCertificate {
     std::uint64_t path_until_ = 0;                // sample up to which the path is queried
     JointBox box_;                                // that is queried
     std::span<const JointBox> queried_pieces_{};  // and in which pieces, where the path is known
-    // n of the longer permit that is tried in this cycle, and that of the next; what was proven.
-    std::uint8_t samples_try_, samples_next_, samples_;
+    PermitLadder ladder_, ladder_next_;  // what this cycle tries, and the next
+    std::uint8_t samples_;               // n that was proven
     bool has_wider_ = false;  // it was tried
     JointBox wider_box_;      // with it
     std::uint32_t tool_ = kNoIndex;

@@ -460,6 +460,16 @@ TEST_F(StopCertificateTest, ThePermitIsAsLongAsTheShortestThatAPairIsProvenWith)
             best = std::max(best, samples);
         }
         EXPECT_EQ(best, room);
+        int short_ones = 0;
+        for (int cycle = 0; cycle < 4 * kCyclesBarred; ++cycle) {
+            prove();
+            certificate->keep();
+            const std::uint8_t samples = certificate->cycle().samples;
+            ASSERT_TRUE(samples == 3 || samples == room) << +samples;
+            short_ones += samples == 3 ? 1 : 0;
+        }
+        EXPECT_LE(short_ones, 4) << "a longer one is tried now and then, not every second time";
+        EXPECT_GE(short_ones, 3) << "and it is tried";
     }
     m.can.permit_samples = {5, 5};
     make();
