@@ -120,6 +120,9 @@ void GuardNode::on_receiver(const ReceiverEvent& event, std::int64_t now_us) noe
     if (event.kind == ReceiverEvent::Kind::snapshot) {
         ++counters_.snapshots;
         period_.follow(event.snapshot.arrived_us, guard_.phase != GuardPhase::armed);
+        if (owed_ == completed_ && period_.is_of_next(event.snapshot.arrived_us)) {
+            end_period(now_us);  // nothing more is expected in it
+        }
         submit(LiveQuery::Kind::snapshot, event, now_us);
         if (event.samples_lost != 0) {
             fail(GuardFault::input_noise, now_us);

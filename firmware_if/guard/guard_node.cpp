@@ -145,9 +145,13 @@ void GuardNode::end_periods(std::int64_t until_us) noexcept {
         if (is_down_) {  // a fault that lasts is reported every period
             fail(GuardFault::input, until_us);
         }
-        period_.advance();
-        on({.kind = GuardEventKind::deadline}, until_us);
+        end_period(until_us);
     }
+}
+
+void GuardNode::end_period(std::int64_t now_us) noexcept {
+    period_.advance();
+    on({.kind = GuardEventKind::deadline}, now_us);
 }
 
 void GuardNode::take_results(std::int64_t now_us) noexcept {

@@ -151,6 +151,7 @@ class GuardNode {
     void on_phase(GuardPhase before, std::int64_t now_us) noexcept;
     void check_gap(std::int64_t now_us) noexcept;
     void end_periods(std::int64_t until_us) noexcept;
+    void end_period(std::int64_t now_us) noexcept;
     void take_results(std::int64_t now_us) noexcept;
     void on_result(const LiveResult& live_result, std::int64_t now_us) noexcept;
     void send_permit(const LiveResult& live_result, std::int64_t now_us) noexcept;

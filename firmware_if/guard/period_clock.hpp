@@ -34,6 +34,12 @@ class PeriodClock {
         next_us_ += jumps ? off_us : std::clamp(off_us / 4, -most_us, most_us);
     }
 
+    /// It is nearer to where snapshots are expected in the next period than in this one: after a
+    /// lost one, and where the bus has less to carry, the next may be complete before its period.
+    [[nodiscard]] bool is_of_next(std::int64_t arrived_us) const noexcept {
+        return next_us_ - arrived_us < period_us_ / 2 - slack_us_;
+    }
+
   private:
     static constexpr std::int64_t kLeanShare = 50;  // of a period, at most, with each snapshot
 

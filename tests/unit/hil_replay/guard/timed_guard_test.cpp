@@ -38,6 +38,38 @@ TEST(TimedGuard, PermitsEverySampleOfAHealthyBoard) {
     }
 }
 
+// A pair of permits on the bus holds up the board's next frames. After a sample that was lost there
+// is none, so the next is complete 265 us sooner than usual, and before its period has begun.
+TEST(TimedGuard, ALostSampleCostsItsOwnPermitAlone) {
+    constexpr std::int64_t kHeldUpUs = 265;
+    constexpr int kSamples = 200, kLostEvery = 10;
+    TimedWorld world;
+    world.response_us = world.machine.deadline_us;
+    world.start();
+    bool was_lost = false;
+    std::int64_t armed_us = 0;
+    std::size_t expected = 0;
+    for (int i = 0; i < static_cast<int>(kSamplesToReady) + kSamples; ++i) {
+        const bool counts = i >= static_cast<int>(kSamplesToReady);
+        const bool is_lost = counts && i % kLostEvery == 0;
+        std::vector<CanFrame> frames = world.next_sample();
+        if (is_lost) {
+            frames.erase(frames.begin() + 1);  // the first after the SYNC
+        }
+        for (CanFrame& frame : frames) {
+            frame.time_us += was_lost ? 0 : kHeldUpUs;
+            world.run_before(frame.time_us);
+            world.guard->arrive({.frame = frame});
+        }
+        was_lost = is_lost;
+        armed_us = counts ? armed_us : world.newest_us() + world.machine.can.sample_us;
+        expected += counts && !is_lost ? 1 : 0;
+    }
+    world.run_before(world.newest_us() + world.machine.can.sample_us);
+    ASSERT_EQ(world.phase(), GuardPhase::armed) << to_text(world.cause());
+    EXPECT_EQ(world.with_id(world.machine.can.permit_id, armed_us).size(), expected);
+}
+
 // Live, the first timer after the age limit finds stale input. A board that is silent for ever and
 // one that speaks again much later are stopped at the same instant, and no frame is needed for it.
 TEST(TimedGuard, StaleInputInMotionStopsBetweenFrames) {
