@@ -80,9 +80,7 @@ void read_cap(MapReader& reader, Machine& machine) {
     const std::string found{kCaps[cap]};
     const CanLayout& can = machine.can;
     const bool has_ack = can.format == CanFormat::classical || can.format == CanFormat::fd;
-    if (cap == static_cast<std::size_t>(CapPromise::per_axis)) {
-        reader.report("cap", found, "none or all_axes; the guard does not choose single axes yet");
-    } else if (!has_ack) {
+    if (!has_ack) {
         reader.report(
             "cap", found + " with frames of another format",
             "none, or can.format classical or fd; other formats do not acknowledge a cap");

@@ -8,6 +8,7 @@
 
 #include "core/base/assert.hpp"
 #include "core/base/sincos.hpp"
+#include "core/certificate/steered_samples.hpp"
 #include "core/certificate/travel.hpp"
 #include "core/machine/kinematics.hpp"
 
@@ -453,6 +454,9 @@ void StopCertificate::take_wider() noexcept {
     samples_ = are_all_proven ? ladder_.samples : range.least;
     if (!keeps_cap()) {
         ladder_next_ = ladder_.next(range, are_all_proven);
+    } else if (machine_->guard.cap == CapPromise::per_axis) {
+        ladder_next_ = ladder_.next({range.least, samples_work(range)}, are_all_proven);
+        ladder_next_.samples = std::max(ladder_next_.samples, samples_steered(range));
     }
 }
 

@@ -3,12 +3,9 @@
 
 #include <algorithm>
 
-#include "core/base/assert.hpp"
-
 namespace axg {
 namespace {
 
-constexpr std::uint8_t kAllAxes = 0xFF;
 constexpr std::uint32_t kRaiseShare = 32;
 
 }  // namespace
@@ -33,32 +30,11 @@ bool CapControl::asks_raise(std::int64_t sample_us) const noexcept {
            sample_us - room_since_us_ >= kCapRoomUs && is_over(raised_us_) && is_over(asked_us_);
 }
 
-/// The mask takes another axis. False: it has all of them.
-bool CapControl::bind_one_more(const CapCycle& cycle) noexcept {
-    constexpr std::uint32_t kLastBit = 7;
-    AXG_ASSERT(cycle.axis_count <= cycle.axes.size());
-    for (std::uint32_t i = 0; i < cycle.axis_count; ++i) {
-        const std::uint32_t bit = std::min<std::uint32_t>(cycle.axes[i], kLastBit);
-        if ((order_.mask >> bit & 1U) == 0) {
-            order_.mask = static_cast<std::uint8_t>(order_.mask | 1U << bit);
-            return true;
-        }
-    }
-    const bool is_new = order_.mask != kAllAxes;
-    order_.mask = kAllAxes;
-    return is_new;
-}
-
 void CapControl::fall(const CapCycle& cycle) noexcept {
     const std::uint8_t before = order_.cap;
-    bool has_more = false;
-    if (promise_ == CapPromise::all_axes) {
-        order_.mask = kAllAxes;
-    } else if (order_.mask == 0 || !cycle.is_proven) {
-        has_more = bind_one_more(cycle);
-    }
+    order_.mask = kMaskOfAll;
     std::uint32_t cap = std::min(before, cycle.wanted);
-    if (!cycle.is_proven && !has_more) {  // no wish explains it: a quarter less a cycle
+    if (!cycle.is_proven) {  // no wish explains it: a quarter less a cycle
         cap = std::min(cap, before * 3U / 4);
     }
     // From more than a crawl the first step is down to it: hold is for what a crawl cannot.

@@ -4,16 +4,15 @@
 // sent for what was proven with that cap. Source: docs/reference/board.md, "The cap".
 #pragma once
 
-#include <array>
 #include <cstdint>
 
-#include "core/base/limits.hpp"
 #include "core/guard/ack_ledger.hpp"
 #include "core/machine/machine.hpp"
 
 namespace axg {
 
 inline constexpr std::uint8_t kCapCrawl = 1, kCapHold = 0;
+inline constexpr std::uint8_t kMaskOfAll = 0xFF;
 inline constexpr std::int64_t kCapRoomUs = 100'000, kCapRaiseUs = 10'000, kCapHeldUs = 2'000'000;
 
 /// What a cycle found out, at the caps that the board acknowledges and those ordered last.
@@ -23,11 +22,6 @@ struct CapCycle {
     bool is_proven = false;        // for the longest validity that the control steers for
     bool is_raise_proven = false;  // the same with `raised_cap`, in this very cycle
     bool is_raise_asked = false;   // whether it is; the next time is a while later
-    // Axes that a bound may help with, the one first that it costs least: one that hardly moves now
-    // may still start, and is as large in the boxes as one that moves. Precondition: each axis
-    // once.
-    std::array<std::uint8_t, kAxesMax> axes{};
-    std::uint32_t axis_count = 0;
 };
 
 struct CapOrder {
@@ -58,7 +52,6 @@ class CapControl {
   private:
     void fall(const CapCycle& cycle) noexcept;
     void rise(const CapCycle& cycle) noexcept;
-    [[nodiscard]] bool bind_one_more(const CapCycle& cycle) noexcept;
     [[nodiscard]] bool has_room(std::uint8_t wanted) const noexcept;
 
     CapPromise promise_;

@@ -11,6 +11,7 @@
 #include "core/base/limits.hpp"
 #include "core/certificate/stop_certificate.hpp"
 #include "core/guard/ack_ledger.hpp"
+#include "core/guard/axis_cap_control.hpp"
 #include "core/guard/cap_control.hpp"
 #include "core/guard/monitor.hpp"
 #include "core/guard/speed_advisory.hpp"
@@ -50,11 +51,19 @@ class CapGuard {
     /// a stop where the board does not keep its promise.
     /// @param wanted  the fastest cap that is proven a little later; null: none is known
     void judge(const StopCycle& cycle, const std::uint8_t* wanted, bool is_armed,
-               CycleResult& result) noexcept;
+               CycleResult& result, const CapWish* wish = nullptr) noexcept;
 
     /// What the last permit ordered, where a dump that begins later says so.
-    void set_order(const CapOrder& order) noexcept { control_.set_order(order); }
-    [[nodiscard]] const CapOrder& order() const noexcept { return control_.order(); }
+    void set_order(const CapOrder& order) noexcept {
+        control_.set_order(order);
+        axis_control_.set_order(order);
+    }
+    [[nodiscard]] const CapOrder& order() const noexcept {
+        return is_per_axis() ? axis_control_.order() : control_.order();
+    }
+    [[nodiscard]] bool is_per_axis() const noexcept {
+        return machine_->guard.cap == CapPromise::per_axis;
+    }
 
   private:
     struct Seen {
@@ -64,6 +73,8 @@ class CapGuard {
     [[nodiscard]] AxisCaps bound_caps(const CapOrder& order) const noexcept;
     [[nodiscard]] bool is_above() const noexcept;
     [[nodiscard]] bool asks_raise() const noexcept;
+    void order_next_axes(const StopCycle& cycle, const CapWish* wish) noexcept;
+    void note_fall(const CapOrder& before) noexcept;
     void order_next(const StopCycle& cycle, const std::uint8_t* wanted) noexcept;
     [[nodiscard]] bool is_too_fast(std::uint32_t axis, const Seen& before) const noexcept;
     void watch_speeds() noexcept;
@@ -73,6 +84,7 @@ class CapGuard {
 
     const Machine* machine_;
     CapControl control_;
+    AxisCapControl axis_control_;
     CapFacts facts_;
     std::int64_t latched_us_ = 0, fell_us_ = 0;  // newest sample, and last order to slow down
     std::array<Seen, kSeen> seen_{};

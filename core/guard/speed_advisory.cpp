@@ -8,6 +8,8 @@
 
 #include "core/base/assert.hpp"
 #include "core/certificate/permit_ladder.hpp"
+#include "core/certificate/steered_samples.hpp"
+#include "core/guard/order_list.hpp"
 #include "core/machine/cycle_plan.hpp"
 
 namespace axg {
@@ -124,6 +126,85 @@ double share_of(std::uint32_t feed) noexcept {
     return static_cast<double>(feed) / kSpeedCapRapid;
 }
 
+/// What is certain of a range that holds 0: nothing.
+double certain(double low, double high) noexcept {
+    return low > 0 ? low : high < 0 ? high : 0;
+}
+
+constexpr double kOrderLead = 1.5;
+
+struct AxisFuture {
+    double fastest = 0;  // by the order
+    double growth = 1;   // OrderTried::growth
+    double lead_s = 0, free_s = 0;
+};
+
+/// Where an axis can get from the place that it has come to when the order is in force; on the way
+/// there what is in force now is proven.
+void put_place(AxisLimits limits, const AxisRange& now, const AxisFuture& future, double& low,
+               double& high) noexcept {
+    const double middle = 0.5 * (now.speed_low + now.speed_high);
+    const double known = certain(now.acceleration_low, now.acceleration_high);
+    const double sign = middle < 0 || (middle == 0 && known < 0) ? -1 : 1;
+    const double speed = sign * middle;
+    Going end = go_on(speed, sign * known, limits.jerk_max, future.fastest, future.lead_s);
+    const double most = std::min(future.fastest, future.growth * speed);
+    const double faster = std::min(most, speed + limits.acceleration_max * future.lead_s);
+    if (future.growth > 1 && faster > end.speed) {
+        end = {0.5 * (speed + faster) * future.lead_s, faster,
+               faster < most ? limits.acceleration_max : 0};
+    }
+    const double slack =
+        0.5 * (now.speed_high - now.speed_low) + kPeriodShare * std::fabs(end.speed - speed);
+    const double unknown = 0.5 * (now.acceleration_high - now.acceleration_low);
+    const double then = sign * end.speed, pull = sign * end.acceleration;
+    limits.speed_max = std::min(limits.speed_max, future.fastest);
+    high = now.high + sign * end.way +
+           forward_reach(limits, then - slack, then + slack, future.free_s, pull + unknown);
+    low = now.low + sign * end.way -
+          forward_reach(limits, -then - slack, -then + slack, future.free_s, unknown - pull);
+}
+
+/// From an order to slow down until the board acknowledges it: a planner averages its speed for as
+/// long as the softest axis needs to turn its acceleration round. Longer leads cost more time.
+double order_lead_seconds(const Machine& machine) noexcept {
+    return kOrderLead * cap_lead_seconds(machine);
+}
+
+JointBox ordered_box(const Machine& machine, const AxisRanges& ranges,
+                     const OrderTried& tried) noexcept {
+    const AxisCaps caps = caps_of_permit(tried.order.cap, tried.order.mask);
+    const double free_s = free_seconds(machine, samples_steered(machine.can.permit_samples));
+    JointBox box;
+    for (std::uint32_t i = 0; i < machine.axes.size(); ++i) {
+        const Axis& axis = machine.axes[i];
+        double low = 0, high = 0;
+        put_place(stop_limits(machine, i), ranges[i],
+                  {.fastest = share_of(caps[i]) * axis.speed_max,
+                   .growth = tried.growth,
+                   .lead_s = order_lead_seconds(machine),
+                   .free_s = free_s},
+                  low, high);
+        if (machine.guard.travel_enforced && !axis.unlimited) {
+            low = std::max(low, std::min(axis.min, ranges[i].low));
+            high = std::min(high, std::max(axis.max, ranges[i].high));
+        }
+        box.centre[i] = 0.5 * (low + high);
+        box.half[i] = std::max(0.0, high - box.centre[i]);
+    }
+    return box;
+}
+
+OrderList orders_about(const Machine& machine, const AxisRanges& ranges,
+                       const CapOrder& order) noexcept {
+    std::array<double, kAxesMax> uses{};
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+        const double speed = 0.5 * std::fabs(ranges[i].speed_low + ranges[i].speed_high);
+        uses[i] = kSpeedCapRapid * speed / machine.axes[i].speed_max;
+    }
+    return list_orders({uses.data(), machine.axes.size()}, order);
+}
+
 std::uint32_t fastest_after(std::uint32_t last) noexcept {
     return std::min(kSpeedCapRapid, 2 * last + kRise);
 }
@@ -153,10 +234,12 @@ JointBox capped_reach(const Machine& machine, const StopCertificate& certificate
 
 std::optional<SpeedAdvisory> SpeedAdvisory::create(const Machine& machine, bool is_enforced) {
     const std::uint32_t pairs = stop_tasks(machine);
-    const std::uint32_t tasks = pairs * kFeeds;
+    const bool is_per_axis = machine.guard.cap == CapPromise::per_axis;
+    const std::uint32_t tasks = pairs * (is_per_axis ? kOrdersTried : kFeeds);
     const std::uint32_t queries = queries_of(cycle_plan(machine, pairs));
-    auto prover =
-        JointBoxProver::create(machine, tasks, {.rounds = kAdvisoryRounds, .queries = queries});
+    auto prover = JointBoxProver::create(
+        machine, tasks,
+        {.rounds = is_per_axis ? kOrderRounds : kAdvisoryRounds, .queries = queries});
     Arena arena(Arena::size_bytes<JointBoxTask>(tasks) + Arena::size_bytes<JointBoxResult>(tasks) +
                 Arena::size_bytes<std::uint32_t>(pairs));
     if (!prover || !arena.ok()) {
@@ -195,24 +278,10 @@ std::uint8_t SpeedAdvisory::search(const Engine& engine, const StopCertificate& 
     const std::span<const JointBoxTask> pairs = certificate.tasks();
     AXG_ASSERT(pairs.size() <= open_.size());
     const AxisRanges ranges = ranges_of(*machine_, certificate);
-    const auto put = [&](std::uint32_t at, std::uint32_t pair, const JointBox& box) {
-        tasks_[at] = pairs[pair];
-        tasks_[at].box = box;
-        tasks_[at].pieces = {};
-    };
     Feeds feeds{};
     const std::uint32_t feed_count = feeds_about(last, feeds);
     const JointBox widest = capped_box(*machine_, ranges, share_of(feeds[0]), is_enforced_);
-    for (std::uint32_t i = 0; i < pairs.size(); ++i) {
-        put(i, i, widest);
-    }
-    prove(engine, static_cast<std::uint32_t>(pairs.size()), {.rounds = 1, .queries = queries});
-    std::uint32_t open = 0;
-    for (std::uint32_t i = 0; i < pairs.size(); ++i) {
-        if (results_[i].proof != JointBoxProof::proven) {
-            open_[open++] = i;
-        }
-    }
+    const std::uint32_t open = prove_widest(engine, widest, pairs, queries);
     if (open == 0) {
         return static_cast<std::uint8_t>(feeds[0]);
     }
@@ -223,19 +292,101 @@ std::uint8_t SpeedAdvisory::search(const Engine& engine, const StopCertificate& 
     for (std::uint32_t feed = first; feed < feed_count; ++feed) {
         const JointBox box = capped_box(*machine_, ranges, share_of(feeds[feed]), is_enforced_);
         for (std::uint32_t i = 0; i < open; ++i) {
-            put(tasks++, open_[i], box);
+            put(tasks++, pairs[open_[i]], box);
         }
     }
     prove(engine, tasks, {.queries = queries});
     for (std::uint32_t feed = first; feed < feed_count; ++feed) {
-        const auto of_feed = results_.subspan(std::size_t{feed - first} * open, open);
-        if (std::all_of(of_feed.begin(), of_feed.end(), [](const JointBoxResult& result) {
-                return result.proof == JointBoxProof::proven;
-            })) {
+        if (are_proven((feed - first) * open, open)) {
             return static_cast<std::uint8_t>(feeds[feed]);
         }
     }
     return 0;
+}
+
+void SpeedAdvisory::put(std::uint32_t at, const JointBoxTask& pair, const JointBox& box) noexcept {
+    tasks_[at] = pair;
+    tasks_[at].box = box;
+    tasks_[at].pieces = {};
+}
+
+bool SpeedAdvisory::are_proven(std::uint32_t first, std::uint32_t count) const noexcept {
+    const auto of = results_.subspan(first, count);
+    return std::all_of(of.begin(), of.end(), [](const JointBoxResult& result) {
+        return result.proof == JointBoxProof::proven;
+    });
+}
+
+/// One query a pair: what it proves holds of every box within. Returns how many stay open.
+std::uint32_t SpeedAdvisory::prove_widest(const Engine& engine, const JointBox& widest,
+                                          std::span<const JointBoxTask> pairs,
+                                          std::uint32_t queries) noexcept {
+    const auto count = static_cast<std::uint32_t>(pairs.size());
+    for (std::uint32_t i = 0; i < count; ++i) {
+        put(i, pairs[i], widest);
+    }
+    prove(engine, count, {.rounds = 1, .queries = queries});
+    std::uint32_t open = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        if (results_[i].proof != JointBoxProof::proven) {
+            open_[open++] = i;
+        }
+    }
+    return open;
+}
+
+void SpeedAdvisory::update_axes(const Engine& engine, const StopCertificate& certificate,
+                                std::uint32_t queries, const CapOrder& order) noexcept {
+    queries_count_ = 0;
+    const StopCycle cycle = certificate.cycle();
+    is_known_ = cycle.status == SnapshotStatus::ok && cycle.is_settled && !cycle.is_jog;
+    wish_ = {.best = {.cap = kCapCrawl, .mask = kMaskOfAll},
+             .is_kept_fine = false,
+             .is_any_proven = false};
+    if (is_known_ && certificate.tasks().size() <= queries) {
+        wish_ = search_orders(engine, certificate, queries, order);
+    }
+    cap_ = wish_.is_any_proven ? wish_.best.cap : std::uint8_t{0};
+}
+
+/// The first of the list that is proven, the one that costs least, and whether the last order is.
+CapWish SpeedAdvisory::search_orders(const Engine& engine, const StopCertificate& certificate,
+                                     std::uint32_t queries, const CapOrder& order) noexcept {
+    const std::span<const JointBoxTask> pairs = certificate.tasks();
+    AXG_ASSERT(pairs.size() <= open_.size());
+    const AxisRanges ranges = ranges_of(*machine_, certificate);
+    const OrderList list = orders_about(*machine_, ranges, order);
+    const OrderTried rapid{.growth = list.is_slowed ? kAnyGrowth : 1};
+    const std::uint32_t open =
+        prove_widest(engine, ordered_box(*machine_, ranges, rapid), pairs, queries);
+    if (open == 0) {
+        return {};
+    }
+    queries -= queries_count_;
+    // Where there is not a query for each, those that cost least are left out.
+    const std::uint32_t first = list.count - std::min(list.count, queries / open);
+    std::uint32_t tasks = 0;
+    for (std::uint32_t at = first; at < list.count; ++at) {
+        const JointBox box = ordered_box(*machine_, ranges, list.of[at]);
+        for (std::uint32_t i = 0; i < open; ++i) {
+            put(tasks++, pairs[open_[i]], box);
+        }
+    }
+    prove(engine, tasks, {.queries = queries});
+    CapWish wish{.best = {.cap = kCapCrawl, .mask = kMaskOfAll},
+                 .is_kept_fine = false,
+                 .is_any_proven = false};
+    for (std::uint32_t at = first; at < list.count; ++at) {
+        if (!are_proven((at - first) * open, open)) {
+            continue;
+        }
+        const CapOrder& proven = list.of[at].order;
+        wish.best = wish.is_any_proven ? wish.best : proven;
+        wish.is_any_proven = true;
+        wish.is_kept_fine =
+            wish.is_kept_fine || is_within(order, caps_of_permit(proven.cap, proven.mask));
+    }
+    return wish;
 }
 
 }  // namespace axg

@@ -16,6 +16,7 @@
 #include "core/certificate/stop_certificate.hpp"
 #include "core/collision/engine.hpp"
 #include "core/guard/advisories.hpp"
+#include "core/guard/axis_cap_control.hpp"
 #include "core/machine/machine.hpp"
 
 namespace axg {
@@ -47,6 +48,11 @@ class SpeedAdvisory {
     void update(const Engine& engine, const StopCertificate& certificate,
                 std::uint32_t queries) noexcept;
 
+    /// The same of a board that keeps single axes within a cap, where `order` was ordered last.
+    void update_axes(const Engine& engine, const StopCertificate& certificate,
+                     std::uint32_t queries, const CapOrder& order) noexcept;
+    [[nodiscard]] const CapWish& wish() const noexcept { return wish_; }
+
     /// 1/250 of rapid; 0: no feed is proven, or nothing is known.
     [[nodiscard]] std::uint8_t cap() const noexcept { return cap_; }
     /// Something is: the certificate was settled, and no jog is on.
@@ -58,7 +64,8 @@ class SpeedAdvisory {
     }
 
     static constexpr std::uint32_t kAdvisoryRounds =
-        4;  // three halvings: eight boxes a pair and feed
+        4;                                            // three halvings: eight boxes a pair and feed
+    static constexpr std::uint32_t kOrderRounds = 6;  // the same of single axes
 
   private:
     SpeedAdvisory(const Machine& machine, JointBoxProver prover, Arena arena) noexcept
@@ -67,6 +74,13 @@ class SpeedAdvisory {
           arena_(static_cast<Arena&&>(arena)) {}
     [[nodiscard]] std::uint8_t search(const Engine& engine, const StopCertificate& certificate,
                                       std::uint32_t last, std::uint32_t queries) noexcept;
+    [[nodiscard]] CapWish search_orders(const Engine& engine, const StopCertificate& certificate,
+                                        std::uint32_t queries, const CapOrder& order) noexcept;
+    [[nodiscard]] std::uint32_t prove_widest(const Engine& engine, const JointBox& widest,
+                                             std::span<const JointBoxTask> pairs,
+                                             std::uint32_t queries) noexcept;
+    void put(std::uint32_t at, const JointBoxTask& pair, const JointBox& box) noexcept;
+    [[nodiscard]] bool are_proven(std::uint32_t first, std::uint32_t count) const noexcept;
     void prove(const Engine& engine, std::uint32_t tasks, const JointBoxSpend& spend) noexcept;
 
     const Machine* machine_;
@@ -77,6 +91,7 @@ class SpeedAdvisory {
     std::span<std::uint32_t> open_;  // pairs that the fastest feed leaves unproven
     std::uint32_t queries_count_ = 0;
     std::uint8_t cap_ = 0;
+    CapWish wish_{};
     bool is_enforced_ = false, is_known_ = false;
 };
 

@@ -82,11 +82,15 @@ double approach_jerk(const Axis& axis, const AxisMotion& now, double target, dou
     return now.acceleration > 0 ? -j : j;  // keeps the law from wherever it was kept
 }
 
-CommandedMotion make_approach(const Machine& machine, const Approach& approach,
-                              const double* share) {
-    return [&machine, approach, share](std::span<AxisMotion> axes) {
-        const double most = share != nullptr ? *share : 1;
+CommandedMotion make_approach(const Machine& machine, const Approach& approach, const double* share,
+                              AxisShares* axis_shares) {
+    return [&machine, approach, share, axis_shares](std::span<AxisMotion> axes) {
+        const double most_of_all = share != nullptr ? *share : 1;
         for (std::size_t i = 0; i < axes.size(); ++i) {
+            const double most = axis_shares != nullptr ? axis_shares->wanted[i] : most_of_all;
+            if (axis_shares != nullptr) {
+                axis_shares->needed[i] = std::max(axis_shares->needed[i], most);
+            }
             const bool is_held =
                 most <= 0 && nearly_stands(machine.axes[i], axes[i], approach.tick_s);
             if (is_held ||

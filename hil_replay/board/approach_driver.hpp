@@ -21,8 +21,10 @@ struct Approach {
 /// the acceleration had to go to zero from there. `machine` must outlive the motion.
 /// @param share  of each axis' largest speed, read at every tick, that it may have at most; null:
 ///     all of it
+/// @param axis_shares  the same with a share for each axis; null: none has one of its own
 [[nodiscard]] CommandedMotion make_approach(const Machine& machine, const Approach& approach,
-                                            const double* share = nullptr);
+                                            const double* share = nullptr,
+                                            AxisShares* axis_shares = nullptr);
 
 /// The jerk of one axis for the next tick.
 /// @param share_kept  of its largest speed, that it does not exceed even while its acceleration

@@ -13,9 +13,6 @@ namespace {
 
 constexpr double kSecondsPerUs = 1e-6;
 constexpr double kStandstillCounts = 0.05;  // axes slower than this a sample count as standing
-constexpr std::int64_t kLateUs = 100'000;   // CapFault::late
-constexpr double kCapShare = 0.98;          // of a cap, that it stays below
-constexpr double kCapCounts = 1e-6;         // of 1/250 of rapid: an axis that is slower stands
 constexpr double kOffChangesUs = 5000;      // what an axis is off its path changes in a stop
 
 /// The way that an axis is turned to by the acceleration it has while the jerk takes that away; 0:
@@ -66,7 +63,8 @@ MotionBoard::MotionBoard(const Machine& machine, std::span<const double> start,
       random_(options.seed),
       encoder_(machine, {.says_session = false}),
       watch_(machine.can, options.jog.axis != kNoIndex, options.permit_us, options.hashes,
-             options.speed_share != nullptr ? options.cap : CapPromise::none),
+             options.speed_share != nullptr || options.axis_shares != nullptr ? options.cap
+                                                                              : CapPromise::none),
       tool_(options.tool == 0 ? machine.first_tool : options.tool),
       sent_tool_(tool_) {
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
@@ -74,8 +72,11 @@ MotionBoard::MotionBoard(const Machine& machine, std::span<const double> start,
     }
     const double period_s = machine.can.sample_us * kSecondsPerUs;
     shares_.resize(2 + static_cast<std::size_t>(std::ceil(options.cap_smooth_s / period_s)), 0.0);
-    late_shares_.resize(static_cast<std::size_t>(kLateUs / machine.can.sample_us) + 1, 1.0);
-    if (keeps_cap()) {
+    late_shares_.resize(static_cast<std::size_t>(kCapLateUs / machine.can.sample_us) + 1, 1.0);
+    if (keeps_cap() && options_.axis_shares != nullptr) {
+        axis_caps_.emplace(machine, *options.axis_shares,
+                           CapKeeping{options.cap_smooth_s, options.cap_fault});
+    } else if (keeps_cap()) {
         *options_.speed_share = 0;
     }
     if (machine.can.look_ahead_samples == 0) {
@@ -190,18 +191,17 @@ void MotionBoard::drive(std::int64_t until_us) {
     }
 }
 
-/// What the fastest axis has, and what a stop that begins now would bring it to: it takes the
-/// acceleration away with the jerk that is guaranteed at least.
 void MotionBoard::note_speeds() noexcept {
     if (!keeps_cap()) {
         return;
     }
+    if (axis_caps_) {
+        cap_breaches_ += axis_caps_->note(axes()) ? 0U : 1U;
+        return;
+    }
     double fastest = 0;
     for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
-        const Axis& axis = machine_.axes[i];
-        const double a = axes_[i].acceleration, v = axes_[i].speed;
-        const double more = v * a > 0 ? 0.5 * a * a / axis.jerk_max : 0;
-        fastest = std::max(fastest, (std::abs(v) + more) / axis.speed_max);
+        fastest = std::max(fastest, share_in_stop(machine_.axes[i], axes_[i]));
     }
     fastest_ = std::max(fastest_, fastest);
     cap_breaches_ += fastest * kSpeedCapRapid > kept_cap_ + kCapCounts ? 1U : 0U;
@@ -211,6 +211,14 @@ void MotionBoard::note_speeds() noexcept {
 /// permit when no axis is faster, nor will be by what was commanded; it speeds up when it may.
 void MotionBoard::keep_cap() {
     if (!keeps_cap()) {
+        return;
+    }
+    if (axis_caps_) {
+        axis_caps_->keep(watch_, watch_.is_slow() ? options_.slow_share : 1, next_us_);
+        kept_cap_ = axis_caps_->least_kept();
+        if (state_ == BoardState::moving) {
+            note_speeds();
+        }
         return;
     }
     const bool is_true = options_.cap_fault == CapFault::none;

@@ -16,21 +16,15 @@
 #include "core/machine/configuration_hashes.hpp"
 #include "core/machine/machine.hpp"
 #include "firmware_if/protocol/axis_frames.hpp"
+#include "hil_replay/board/axis_cap_keeper.hpp"
 #include "hil_replay/board/axis_motion.hpp"
+#include "hil_replay/board/axis_shares.hpp"
 #include "hil_replay/board/commanded_path.hpp"
 #include "hil_replay/board/permit_watch.hpp"
 
 namespace axg {
 
 inline constexpr std::int64_t kBoardStartUs = 1'000'000;  // of the first sample
-
-/// How a board that says that it keeps the cap of the permits keeps it.
-enum class CapFault : std::uint8_t {
-    none = 0,
-    late,     // acknowledges at once, and begins to slow down a tenth of a second later
-    half,     // acknowledges at once, and goes twice as fast
-    ignores,  // acknowledges at once, and goes on as before
-};
 
 struct BoardOptions {
     std::uint64_t seed = 1;
@@ -47,7 +41,8 @@ struct BoardOptions {
     // It keeps all axes within the cap of the permits. The motion reads at every tick which share
     // of their largest speeds they may have, and comes to it within so many seconds of averaging.
     CapPromise cap = CapPromise::none;
-    double* speed_share = nullptr;  // null: it keeps no cap, whatever is promised
+    double* speed_share = nullptr;      // null: it keeps no cap, whatever is promised
+    AxisShares* axis_shares = nullptr;  // in its place: each axis keeps a cap of its own
     double cap_smooth_s = 0;
     double slow_share = 1;  // under a permit with the word slow
     CapFault cap_fault = CapFault::none;
@@ -134,7 +129,8 @@ class MotionBoard {
 
   private:
     [[nodiscard]] bool keeps_cap() const noexcept {
-        return options_.cap != CapPromise::none && options_.speed_share != nullptr;
+        return options_.cap != CapPromise::none &&
+               (options_.speed_share != nullptr || options_.axis_shares != nullptr);
     }
     void note_speeds() noexcept;
     void keep_cap();
@@ -190,6 +186,7 @@ class MotionBoard {
     std::uint8_t kept_cap_ = 0;
     std::uint64_t cap_breaches_ = 0;
     std::vector<double> late_shares_;
+    std::optional<AxisCapKeeper> axis_caps_;
 
     AxisObserver observe_;
     std::int64_t observe_every_us_ = 0;

@@ -144,6 +144,22 @@ std::uint8_t PermitWatch::ordered_cap(std::int64_t now_us) noexcept {
     return *std::min_element(std::begin(motion.ordered.of), std::end(motion.ordered.of));
 }
 
+CapGroups PermitWatch::ordered_caps(std::int64_t now_us) noexcept {
+    const axg_board_motion motion = axg_board_may_move(&board_, library_us(now_us));
+    CapGroups caps{};
+    std::copy(std::begin(motion.ordered.of), std::end(motion.ordered.of), caps.begin());
+    return caps;
+}
+
+CapGroups PermitWatch::keep_caps(const CapGroups& wanted, std::int64_t now_us) noexcept {
+    axg_board_caps caps{};
+    std::copy(wanted.begin(), wanted.end(), std::begin(caps.of));
+    const axg_board_caps kept = axg_board_keeps(&board_, &caps, library_us(now_us));
+    CapGroups out{};
+    std::copy(std::begin(kept.of), std::end(kept.of), out.begin());
+    return out;
+}
+
 std::uint8_t PermitWatch::keep_cap(std::uint8_t wanted, std::int64_t now_us) noexcept {
     axg_board_caps caps{};
     std::fill(std::begin(caps.of), std::end(caps.of), wanted);

@@ -16,6 +16,8 @@
 namespace axg {
 
 inline constexpr std::int64_t kNever = INT64_MAX;
+/// A cap for each bit of a permit's mask, 1/250 of rapid.
+using CapGroups = std::array<std::uint8_t, AXG_BOARD_CAP_GROUPS>;
 
 /// A permit for sample k holds until t_k + n T on the board's own timer; t_k is the instant at
 /// which the board latched sample k. A pair that is late, lost or damaged is not used, and the last
@@ -39,6 +41,9 @@ class PermitWatch {
     [[nodiscard]] std::uint8_t ack_flags() const noexcept;
     /// Version 2: the cap that all axes are to come to, 1/250 of rapid.
     [[nodiscard]] std::uint8_t ordered_cap(std::int64_t now_us) noexcept;
+    /// The same for each bit of the mask.
+    [[nodiscard]] CapGroups ordered_caps(std::int64_t now_us) noexcept;
+    [[nodiscard]] CapGroups keep_caps(const CapGroups& wanted, std::int64_t now_us) noexcept;
     /// The board keeps all axes below this from now on; a lower one must be true already.
     /// @return  what it may have
     [[nodiscard]] std::uint8_t keep_cap(std::uint8_t wanted, std::int64_t now_us) noexcept;

@@ -233,7 +233,8 @@ int run_bus_drive(const DriveArguments& arguments) {
     options.lost_s = keeps_cap ? &lost_s : nullptr;
     const MotionLimits limits = make_motion_limits(machine);
     const MotionOptions motion;
-    keep_caps(machine, limits.smooth_s, share, options.board);
+    AxisShares axis_shares;
+    keep_caps(machine, limits.smooth_s, share, &axis_shares, options.board);
     const double whole_s =
         arguments.obeys_cap || keeps_cap ? motion_seconds(reading.program, limits, motion) : 0;
     PathRecord path;
@@ -242,8 +243,10 @@ int run_bus_drive(const DriveArguments& arguments) {
     catch_signals();
     const BusDriveResult result =
         play(arguments, loaded, *wire, {gcode.start.data(), machine.axes.size()},
-             make_program_motion(reading.program, limits, motion, share, &lost_s), options, path,
-             samples, lines);
+             make_program_motion(reading.program, limits, motion,
+                                 options.board.axis_shares == nullptr ? share : nullptr, &lost_s,
+                                 options.board.axis_shares),
+             options, path, samples, lines);
     release_signals();
     add_blocks(lines, reading.text);
     PathJudge judge(machine, parts.engine->engine(), containment_test);

@@ -179,11 +179,14 @@ void look_for_ways_out(const DriveArguments& arguments, const LoadedMachine& loa
     }
 }
 
-void keep_caps(const Machine& machine, double smooth_s, double* share, BoardOptions& board) {
+void keep_caps(const Machine& machine, double smooth_s, double* share, AxisShares* shares,
+               BoardOptions& board) {
     if (machine.guard.cap == CapPromise::none) {
         return;
     }
-    board.speed_share = share;
+    const bool is_per_axis = machine.guard.cap == CapPromise::per_axis;
+    board.speed_share = is_per_axis ? nullptr : share;
+    board.axis_shares = is_per_axis ? shares : nullptr;
     board.cap_smooth_s = smooth_s;
     board.slow_share = has_clearance_levels(machine) ? kSlowShare : 1;
 }
@@ -274,7 +277,8 @@ int run_drive(const DriveArguments& arguments) {
     options.speed_share = keeps_cap ? nullptr : share;
     options.obeys_cap = arguments.obeys_cap;
     const MotionLimits limits = make_motion_limits(machine);
-    keep_caps(machine, limits.smooth_s, share, options.board);
+    AxisShares axis_shares;
+    keep_caps(machine, limits.smooth_s, share, &axis_shares, options.board);
     options.lost_s = keeps_cap ? &lost_s : nullptr;
     const MotionOptions motion;
     DriveCsv csv(machine);
@@ -287,8 +291,10 @@ int run_drive(const DriveArguments& arguments) {
     ProgramLines lines{.program = arguments.gcode.program};
     const DriveResult result =
         run_observed(arguments, machine, chain, gcode.start,
-                     make_program_motion(program, limits, motion, share, &lost_s), whole_s, options,
-                     csv, page.get(), judge, lines);
+                     make_program_motion(program, limits, motion,
+                                         options.board.axis_shares == nullptr ? share : nullptr,
+                                         &lost_s, options.board.axis_shares),
+                     whole_s, options, csv, page.get(), judge, lines);
     add_blocks(lines, reading.text);
     const bool is_finished = result.state == BoardState::finished;
     if (result.samples >= arguments.gcode.samples_max) {

@@ -40,7 +40,8 @@ void look_for_ways_out(const DriveArguments& arguments, const LoadedMachine& loa
 
 /// Where the machine file promises it, the board keeps the caps of the permits with a motion that
 /// reads `share` at every tick. It must outlive the drive.
-void keep_caps(const Machine& machine, double smooth_s, double* share, BoardOptions& board);
+void keep_caps(const Machine& machine, double smooth_s, double* share, AxisShares* shares,
+               BoardOptions& board);
 
 /// False: `--report` could not be written, and the reason was.
 [[nodiscard]] bool write_page(const DriveArguments& arguments, const LoadedMachine& loaded,

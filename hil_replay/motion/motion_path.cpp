@@ -19,6 +19,7 @@ constexpr double kKernelMax =
 constexpr double kKernelSlopeMax =
     1.4433756729740645;                 // 15/16 * 4 x (1 - x^2) at x = 1/sqrt(3); times 1/d^2
 constexpr double kTangentTiny = 1e-10;  // a corner this flat is none: 17 mm/s3 of jerk at 10 m/min
+constexpr double kFloatUp = 1 + 1e-6;   // a float of it is no less
 constexpr double kCurveMargin = 0.999;  // differences on the grid against derivatives
 
 // Under tool centre point control the axes' derivatives vary along a line, and are sampled: so many
@@ -114,6 +115,7 @@ double feed_speed(const Program& program, std::uint32_t index, const MotionLimit
 
 struct SpeedPair {
     double speed = 0, acceleration = 0, rapid = 0;
+    std::array<float, kAxesMax> share_per_mm{};
 };
 
 /// The largest path speed at a given path acceleration: for each axis
@@ -146,22 +148,24 @@ double curved_speed(const Bounds& bounds, const MotionLimits& limits, double acc
 
 SpeedPair limit_piece(const Bounds& bounds, const MotionLimits& limits, double feed) {
     double rapid = HUGE_VAL, acceleration = HUGE_VAL;
+    std::array<float, kAxesMax> shares{};
     for (std::uint32_t i = 0; i < limits.axis_count; ++i) {
         if (bounds.first[i] > 0) {
             rapid = std::min(rapid, limits.speed[i] / bounds.first[i]);
             acceleration = std::min(acceleration, limits.planned_acceleration[i] / bounds.first[i]);
+            shares[i] = static_cast<float>(kFloatUp * bounds.first[i] / limits.speed[i]);
         }
     }
     const double speed = std::min(feed, rapid);
     if (!bounds.is_curved) {
-        return {speed, acceleration, rapid};
+        return {speed, acceleration, rapid, shares};
     }
     // What the curve takes is missing for speeding up: the best of a few shares.
-    SpeedPair best{0, 0, rapid};
+    SpeedPair best{0, 0, rapid, shares};
     for (const double share : {0.9, 0.75, 0.6, 0.45, 0.3, 0.15}) {
         const double reached = curved_speed(bounds, limits, share * acceleration, speed);
         if (reached > best.speed * 1.001) {
-            best = {reached, share * acceleration, rapid};
+            best = {reached, share * acceleration, rapid, shares};
         }
     }
     return best;
@@ -350,7 +354,8 @@ void add_piece(Run& run, PieceKind kind, std::uint32_t move, std::int64_t offset
                               .offset = offset,
                               .speed = limit.speed,
                               .acceleration = limit.acceleration,
-                              .rapid = limit.rapid});
+                              .rapid = limit.rapid,
+                              .share_per_mm = limit.share_per_mm});
         run.length += length;
     }
 }

@@ -35,6 +35,8 @@ struct Piece {
     double speed = 0;         // mm of path a second: limits inside this piece
     double acceleration = 0;
     double rapid = 0;  // mm of path a second: the first axis is at its largest speed
+    // Of its largest speed, for each mm of path a second: no less than any axis has in this piece.
+    std::array<float, kAxesMax> share_per_mm{};
 };
 
 /// From one standstill to the next.

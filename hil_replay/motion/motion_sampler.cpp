@@ -67,11 +67,13 @@ void MotionSampler::begin_run() {
         std::count_if(run_.pieces.begin(), run_.pieces.end(),
                       [](const Piece& piece) { return piece.kind == PieceKind::blend; }));
     clock_.begin(&cells_);
-    if (speed_share_ != nullptr) {
+    if (axis_shares_ != nullptr) {
+        planned_.begin(&run_, limits_, &cells_);
+    } else if (speed_share_ != nullptr) {
         plan_rapid(run_, limits_, rapids_);
         capped_.begin(&cells_, &rapids_);
-        free_mm_ = 0;
     }
+    free_mm_ = 0;
     std::fill(window_.begin(), window_.end(), 0);
     window_sum_ = 0;
     slot_ = 0;
@@ -81,8 +83,10 @@ void MotionSampler::begin_run() {
 }
 
 double MotionSampler::step_capped() {
-    lost_steps_ += capped_.is_at_end() ? 0 : 1;
-    const double reached_mm = capped_.step(*speed_share_);
+    const bool is_planned = axis_shares_ != nullptr;
+    lost_steps_ += (is_planned ? planned_.is_at_end() : capped_.is_at_end()) ? 0 : 1;
+    const double reached_mm =
+        is_planned ? planned_.step(*axis_shares_) : capped_.step(*speed_share_);
     while (!clock_.is_at_end() && free_mm_ < reached_mm) {
         free_mm_ = clock_.step();
         --lost_steps_;
@@ -93,9 +97,10 @@ double MotionSampler::step_capped() {
 void MotionSampler::step_run(MotionSample& out) {
     // The true end is the run's whole length: rounding of the profile's own sum may end a hair
     // beside it.
-    const bool is_capped = speed_share_ != nullptr;
-    const double reached_mm = is_capped ? step_capped() : clock_.step();
-    const bool is_at_end = is_capped ? capped_.is_at_end() : clock_.is_at_end();
+    const double reached_mm = is_capped() ? step_capped() : clock_.step();
+    const bool is_at_end = axis_shares_ != nullptr   ? planned_.is_at_end()
+                           : speed_share_ != nullptr ? capped_.is_at_end()
+                                                     : clock_.is_at_end();
     const std::int64_t distance =
         is_at_end ? run_.length
                   : std::min(run_.length,

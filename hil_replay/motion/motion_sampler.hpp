@@ -10,6 +10,7 @@
 #include "hil_replay/motion/motion_limits.hpp"
 #include "hil_replay/motion/motion_path.hpp"
 #include "hil_replay/motion/motion_plan.hpp"
+#include "hil_replay/motion/planned_clock.hpp"
 
 namespace axg {
 
@@ -30,6 +31,8 @@ class MotionSampler {
     /// read at every step and reached with the accelerations of the plan; 0: they stand.
     /// @param speed_share  must outlive the sampler
     void obey(const double* speed_share) noexcept { speed_share_ = speed_share; }
+    /// The same with a share of its own for each axis, kept through every corner.
+    void obey(AxisShares* shares) noexcept { axis_shares_ = shares; }
 
     /// The next sample; the first is the start pose at index 0. False after the last move's end.
     bool next(MotionSample& out);
@@ -47,6 +50,9 @@ class MotionSampler {
     void begin_run();
     void step_run(MotionSample& out);
     [[nodiscard]] double step_capped();
+    [[nodiscard]] bool is_capped() const noexcept {
+        return speed_share_ != nullptr || axis_shares_ != nullptr;
+    }
 
     const Program& program_;
     const MotionLimits& limits_;
@@ -62,10 +68,12 @@ class MotionSampler {
     std::vector<Cell> cells_;
     std::vector<RapidCell> rapids_;
     ProfileClock clock_;
-    CappedClock capped_;  // in its place, with a share to keep to
-    double free_mm_ = 0;  // of `clock_`, which then only says when it would be there
+    CappedClock capped_;    // in its place, with a share to keep to
+    PlannedClock planned_;  // or with one for each axis
+    double free_mm_ = 0;    // of `clock_`, which then only says when it would be there
     std::int64_t lost_steps_ = 0;
     const double* speed_share_ = nullptr;
+    AxisShares* axis_shares_ = nullptr;
     PieceCurve curve_;
     std::size_t piece_ = 0;
     std::vector<std::int64_t> window_;  // the last smooth_steps distances, path units

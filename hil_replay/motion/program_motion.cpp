@@ -12,9 +12,10 @@ constexpr double kSettledShare = 1e-9;  // of a mm or rad: the drive has caught 
 
 struct Follower {
     Follower(const Program& program, const MotionLimits& limits, const MotionOptions& options,
-             const double* speed_share)
+             const double* speed_share, AxisShares* axis_shares)
         : sampler(program, limits, options), keep(std::exp(-kMotionStepS / kDriveLagS)) {
         sampler.obey(speed_share);
+        sampler.obey(axis_shares);
         has_more = sampler.next(now);
         next = now;
     }
@@ -46,8 +47,9 @@ void settle(const Follower& f, double from, std::uint32_t axis, AxisMotion& at) 
 
 CommandedMotion make_program_motion(const Program& program, const MotionLimits& limits,
                                     const MotionOptions& options, const double* speed_share,
-                                    double* lost_s) {
-    const auto follower = std::make_shared<Follower>(program, limits, options, speed_share);
+                                    double* lost_s, AxisShares* axis_shares) {
+    const auto follower =
+        std::make_shared<Follower>(program, limits, options, speed_share, axis_shares);
     const auto from = std::make_shared<AxisPositions>(program.start);
     return [follower, from, lost_s](std::span<AxisMotion> axes) {
         Follower& f = *follower;

@@ -3,6 +3,7 @@
 // them a little late.
 #pragma once
 
+#include "hil_replay/board/axis_shares.hpp"
 #include "hil_replay/board/motion_board.hpp"
 #include "hil_replay/motion/motion_sampler.hpp"
 
@@ -14,12 +15,14 @@ inline constexpr double kDriveLagS = 2e-3;
 
 /// One tick is kMotionStepUs. `program`, `limits` and `options` must outlive the motion.
 /// @param speed_share  MotionSampler::obey; null: the program's own speeds
+/// @param axis_shares  the same with a share for each axis; null: none has one of its own
 /// @param lost_s  takes after each tick how many seconds that has cost; null: nobody wants to know
 [[nodiscard]] CommandedMotion make_program_motion(const Program& program,
                                                   const MotionLimits& limits,
                                                   const MotionOptions& options,
                                                   const double* speed_share = nullptr,
-                                                  double* lost_s = nullptr);
+                                                  double* lost_s = nullptr,
+                                                  AxisShares* axis_shares = nullptr);
 
 /// How long that motion takes from its first tick to rest, s. Cost: every tick of it.
 [[nodiscard]] double motion_seconds(const Program& program, const MotionLimits& limits,

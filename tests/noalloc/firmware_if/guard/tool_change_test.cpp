@@ -110,16 +110,18 @@ TEST_F(ToolChange, AllocatesNothingInEitherMode) {
 }
 
 TEST_F(ToolChange, AllocatesNothingWithAnEnforcedCap) {
-    loaded.machine.guard.cap = CapPromise::all_axes;
     loaded.machine.can.permit_version = 2;
     loaded.machine.can.permit_samples = {3, 12};
     const auto frames = frames_with({1, 2, 1, 2});
-    std::optional<StopCertificate> capped = make_stop_certificate(loaded);
-    std::optional<SpeedAdvisory> advisory = SpeedAdvisory::create(loaded.machine, true);
-    ASSERT_TRUE(capped && advisory);
-    const Sent sent = run(frames, &*capped, &*advisory);
-    EXPECT_EQ(sent.capped, 160);
-    EXPECT_GT(sent.permits[2], 70);
+    for (const CapPromise promise : {CapPromise::all_axes, CapPromise::per_axis}) {
+        loaded.machine.guard.cap = promise;
+        std::optional<StopCertificate> capped = make_stop_certificate(loaded);
+        std::optional<SpeedAdvisory> advisory = SpeedAdvisory::create(loaded.machine, true);
+        ASSERT_TRUE(capped && advisory);
+        const Sent sent = run(frames, &*capped, &*advisory);
+        EXPECT_EQ(sent.capped, 160);
+        EXPECT_GT(sent.permits[2], 70);
+    }
 }
 
 TEST_F(ToolChange, ToANumberThatNoToolHasEndsThePermits) {

@@ -52,7 +52,17 @@ void draw_limits(Random& random, Machine& machine) {
 }
 
 enum class Guard { whole, contact_only, no_jerk, no_dead_man };
-enum class Board { each_axis, each_axis_with_look_ahead, along_path, each_axis_with_cap };
+enum class Board {
+    each_axis,
+    each_axis_with_look_ahead,
+    along_path,
+    each_axis_with_cap,   // the same for all axes
+    each_axis_with_caps,  // or one of its own for each
+};
+
+bool keeps_cap(Board board) {
+    return board == Board::each_axis_with_cap || board == Board::each_axis_with_caps;
+}
 
 struct Tally {
     std::uint64_t approaches = 0, moved = 0, stopped = 0, contacts = 0, too_near = 0;
@@ -108,6 +118,7 @@ struct Drawn {
     Positions start;
     DriveOptions options;
     std::unique_ptr<double> share = std::make_unique<double>(1);  // of a board that keeps caps
+    std::unique_ptr<AxisShares> axis_shares;
     std::int64_t moves_us = 0;  // when the first command comes out of the board's buffer
 };
 
@@ -115,8 +126,9 @@ struct Drawn {
 Drawn draw_approach(Random& random, ContactScene& scene, Guard guard, Board board) {
     Machine& machine = scene.machine();
     draw_limits(random, machine);
-    if (board == Board::each_axis_with_cap) {
-        machine.guard.cap = CapPromise::all_axes;
+    if (keeps_cap(board)) {
+        machine.guard.cap =
+            board == Board::each_axis_with_cap ? CapPromise::all_axes : CapPromise::per_axis;
         machine.can.permit_version = 2;
         machine.can.permit_samples = {3, static_cast<std::uint8_t>(8 + random() % 5)};
         machine.can.stale_after_us = 1000U * machine.can.permit_samples.most;
@@ -137,6 +149,9 @@ Drawn draw_approach(Random& random, ContactScene& scene, Guard guard, Board boar
     out.options.board = promised_board(machine, random());
     if (board == Board::each_axis_with_cap) {
         out.options.board.speed_share = out.share.get();
+    } else if (board == Board::each_axis_with_caps) {
+        out.axis_shares = std::make_unique<AxisShares>();
+        out.options.board.axis_shares = out.axis_shares.get();
     }
     if (guard == Guard::no_dead_man) {
         lab::forget_dead_man(out.options.board);
@@ -165,9 +180,10 @@ DriveResult drive_watched(ContactScene& scene, Guard guard, const Drawn& drawn, 
     observers.watch_us = kWatchUs;
     observers.watch = [&](std::int64_t, std::span<const AxisMotion> axes) { watcher.look(axes); };
     observers.each = [&](const MotionBoard&, const DriveGuard&) { return !watcher.touches(); };
-    return drive(scene.machine(), chain, scene.of(drawn.start),
-                 make_approach(scene.machine(), drawn.approach, drawn.share.get()), drawn.options,
-                 observers);
+    return drive(
+        scene.machine(), chain, scene.of(drawn.start),
+        make_approach(scene.machine(), drawn.approach, drawn.share.get(), drawn.axis_shares.get()),
+        drawn.options, observers);
 }
 
 void approach_once(Random& random, ContactScene& scene, Guard guard, Board board, Tally& tally,
@@ -177,7 +193,7 @@ void approach_once(Random& random, ContactScene& scene, Guard guard, Board board
     Drawn drawn = draw_approach(random, scene, guard, board);
     BusFaults& faults = drawn.options.faults;
     faults.lost = random() % 3 == 0 ? between(random, 0, 0.05) : 0;
-    if (board == Board::each_axis_with_cap) {
+    if (keeps_cap(board)) {
         faults.permit_lost = random() % 2 == 0 ? between(random, 0, 0.2) : 0;
         faults.late = random() % 3 == 0 ? between(random, 0, 0.1) : 0;
         drawn.options.board.cap_fault = cap_fault;
@@ -265,8 +281,8 @@ TEST(ClosedLoop, EveryStopFromALookAheadPathEndsClearAndWithoutAPartOfTheGuardNo
 
 // With caps, permits lost at up to 20 % and late: what a board acknowledges and keeps is believed,
 // and one that does not keep it is seen.
-TEST(ClosedLoop, EveryApproachUnderACapEndsClearAndABoardThatLiesIsSeen) {
-    Random random(printed_seed(20261127));
+void run_capped(Board board, std::uint64_t seed) {
+    Random random(printed_seed(seed));
     const std::uint64_t count = count_from_environment(kUsual / 2);
     std::vector<std::unique_ptr<ContactScene>> scenes;
     for (const std::string& name : kMachines) {
@@ -275,8 +291,7 @@ TEST(ClosedLoop, EveryApproachUnderACapEndsClearAndABoardThatLiesIsSeen) {
     }
     const auto run_with = [&](const char* name, Guard guard, std::uint64_t approaches,
                               CapFault fault) {
-        const Tally tally =
-            run(scenes, random, guard, Board::each_axis_with_cap, approaches, fault);
+        const Tally tally = run(scenes, random, guard, board, approaches, fault);
         print(name, tally);
         std::printf("    %llu slowed, %llu seen to break their cap\n",
                     static_cast<unsigned long long>(tally.slowed),
@@ -303,6 +318,14 @@ TEST(ClosedLoop, EveryApproachUnderACapEndsClearAndABoardThatLiesIsSeen) {
         EXPECT_GT(seen, 0U);
         EXPECT_GT(contact.contacts + no_dead_man.contacts, 0U);
     }
+}
+
+TEST(ClosedLoop, EveryApproachUnderACapEndsClearAndABoardThatLiesIsSeen) {
+    run_capped(Board::each_axis_with_cap, 20261127);
+}
+
+TEST(ClosedLoop, EveryApproachUnderCapsOfSingleAxesEndsClearAndABoardThatLiesIsSeen) {
+    run_capped(Board::each_axis_with_caps, 20261128);
 }
 
 enum class Fault { silence, late, killed, stuck };

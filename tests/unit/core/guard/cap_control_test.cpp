@@ -110,21 +110,6 @@ TEST(CapControl, LeavesHoldByACrawlThatIsProven) {
     EXPECT_EQ(guard.step(0).cap, kCapCrawl);
 }
 
-TEST(CapControl, BindsOneAxisMoreAsLongAsItDoesNotProve) {
-    Guard guard(CapPromise::per_axis);
-    guard.cycle.axes = {3, 0, 9};
-    guard.cycle.axis_count = 3;
-    EXPECT_EQ(guard.step(100).mask, 0b0000'1000);
-    EXPECT_EQ(guard.step(100).mask, 0b0000'1000);
-    const CapOrder second = guard.step(100, false);
-    EXPECT_EQ(second.mask, 0b0000'1001);
-    EXPECT_EQ(second.cap, 100) << "another axis first, then slower";
-    EXPECT_EQ(guard.step(100, false).mask, 0b1000'1001);
-    EXPECT_EQ(guard.step(100, false).mask, 0xFF);
-    EXPECT_EQ(guard.step(100, false).cap, 75);
-    EXPECT_EQ(guard.steps(3000, kCapRapid).mask, 0);
-}
-
 // Whatever the cycles say.
 TEST(CapControl, NeverRisesFasterThanItsRule) {
     std::mt19937_64 random(test::printed_seed(27));

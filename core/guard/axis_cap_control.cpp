@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/guard/axis_cap_control.hpp"
+
+#include <algorithm>
+
+#include "core/guard/order_list.hpp"
+
+namespace axg {
+namespace {
+
+constexpr CapOrder kCrawlOfAll{.cap = kCapCrawl, .mask = kMaskOfAll};
+constexpr std::uint32_t kUnproven = 4;  // cycles: every longer validity was tried
+
+bool are_same(const CapOrder& a, const CapOrder& b) noexcept {
+    return a.cap == b.cap && a.mask == b.mask;
+}
+
+}  // namespace
+
+bool is_within(const CapOrder& order, const AxisCaps& caps) noexcept {
+    return higher_caps(caps_of_permit(order.cap, order.mask), caps) == caps;
+}
+
+CapOrder lower_order(const CapOrder& a, const CapOrder& b) noexcept {
+    return {.cap = std::min(a.cap, b.cap), .mask = static_cast<std::uint8_t>(a.mask | b.mask)};
+}
+
+bool AxisCapControl::asks(std::int64_t sample_us) const noexcept {
+    return has_asked_ &&
+           (is_urgent_ || asked_us_ == INT64_MIN || sample_us - asked_us_ >= kCapRaiseUs);
+}
+
+void AxisCapControl::ask(const CapOrder& order, bool is_urgent) noexcept {
+    asked_ = order;
+    has_asked_ = true;
+    is_urgent_ = is_urgent;
+}
+
+/// Nothing that was looked at is proven: all axes crawl, and where the proof of that fails too they
+/// are held.
+void AxisCapControl::crawl(const AxisCapCycle& cycle) noexcept {
+    if (!are_same(order_, kCrawlOfAll)) {
+        order_ = kCrawlOfAll;
+    } else if (unproven_ > kUnproven) {
+        order_.cap = kCapHold;
+        held_since_us_ = cycle.sample_us;
+    }
+}
+
+void AxisCapControl::fall(const AxisCapCycle& cycle) noexcept {
+    has_room_ = has_asked_ = is_urgent_ = false;
+    if (!cycle.wish.is_any_proven) {
+        crawl(cycle);
+        return;
+    }
+    const CapOrder& wish = cycle.wish.best;
+    const bool binds_more = (wish.mask & ~order_.mask) != 0;
+    if (cycle.is_slowing && !binds_more && 2 * wish.cap > order_.cap) {
+        return;  // each further order begins the wait for its acknowledgement anew
+    }
+    if (is_within(wish, cycle.proven)) {
+        order_ = wish;
+    } else if (!cycle.is_asked) {  // some axis gets a higher cap
+        ask(wish, true);
+    } else {
+        order_ = lower_order(order_, wish);
+    }
+}
+
+CapOrder AxisCapControl::update(const AxisCapCycle& cycle) noexcept {
+    asked_us_ = cycle.is_asked ? cycle.sample_us : asked_us_;
+    unproven_ = cycle.is_proven ? 0 : unproven_ + 1;
+    const bool is_wanted = !cycle.wish.is_kept_fine || has_room_ || order_.cap == kCapHold;
+    if (cycle.is_asked && is_wanted && is_within(asked_, cycle.proven)) {
+        order_ = asked_;
+        has_asked_ = is_urgent_ = false;
+        return order_;
+    }
+    if (order_.cap == kCapHold) {
+        ask(kCrawlOfAll, false);
+        return order_;
+    }
+    if (!cycle.wish.is_kept_fine) {
+        fall(cycle);
+        return order_;
+    }
+    const bool had_room = has_room_;
+    has_room_ = !are_same(cycle.wish.best, order_);
+    room_since_us_ = had_room ? room_since_us_ : cycle.sample_us;
+    has_asked_ = has_room_ && cycle.sample_us - room_since_us_ >= kCapRoomUs;
+    if (has_asked_) {
+        ask(cycle.wish.best, false);
+    }
+    return order_;
+}
+
+}  // namespace axg

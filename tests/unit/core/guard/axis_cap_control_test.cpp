@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// Caps of single axes: down at once, up and across only by what is proven.
+#include "core/guard/axis_cap_control.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "tests/support/seed.hpp"
+
+namespace axg {
+namespace {
+
+CapWish wish_of(CapOrder best, bool is_kept_fine = false) {
+    return {.best = best, .is_kept_fine = is_kept_fine};
+}
+
+struct Bench {
+    /// A cycle in which what was asked is proven, or not.
+    CapOrder step(const CapWish& wish, bool is_asked_proven = true, bool is_proven = true,
+                  bool is_slowing = false) {
+        const CapOrder before = control.order();
+        AxisCapCycle cycle{.sample_us = now_us, .wish = wish};
+        cycle.is_asked = control.asks(now_us);
+        asked += cycle.is_asked ? 1 : 0;
+        cycle.is_proven = is_proven;
+        cycle.is_slowing = is_slowing;
+        cycle.proven = caps_of_permit(before.cap, before.mask);
+        if (cycle.is_asked && is_asked_proven) {
+            const CapOrder& order = control.asked();
+            cycle.proven = higher_caps(cycle.proven, caps_of_permit(order.cap, order.mask));
+        }
+        now_us += 1000;
+        const CapOrder order = control.update(cycle);
+        EXPECT_TRUE(is_within(order, cycle.proven)) << "ordered and not proven";
+        return order;
+    }
+    CapOrder steps(int count, const CapWish& wish, bool is_asked_proven = true) {
+        for (int i = 1; i < count; ++i) {
+            step(wish, is_asked_proven);
+        }
+        return step(wish, is_asked_proven);
+    }
+
+    AxisCapControl control;
+    std::int64_t now_us = 0;
+    int asked = 0;
+};
+
+void expect_order(const CapOrder& order, int cap, int mask) {
+    EXPECT_EQ(order.cap, cap);
+    EXPECT_EQ(order.mask, mask);
+}
+
+TEST(AxisCapControl, FallsAtOnceToWhatBindsMore) {
+    Bench bench;
+    expect_order(bench.step(wish_of({}, true)), kCapRapid, 0);
+    expect_order(bench.step(wish_of({.cap = 32, .mask = 1})), 32, 1);
+    expect_order(bench.step(wish_of({.cap = 8, .mask = 3})), 8, 3);
+    EXPECT_EQ(bench.asked, 0);
+}
+
+// X may be faster again and Y is bound in its place: one permit cannot do that unproven.
+TEST(AxisCapControl, AcrossItAsksAndOtherwiseBindsBoth) {
+    Bench bench;
+    bench.step(wish_of({.cap = 1, .mask = 1}));
+    const CapWish across = wish_of({.cap = 6, .mask = 2});
+    expect_order(bench.step(across), 1, 1);
+    expect_order(bench.step(across), 6, 2);
+    EXPECT_EQ(bench.asked, 1);
+    Bench other;
+    other.step(wish_of({.cap = 1, .mask = 1}));
+    other.step(across);
+    expect_order(other.step(across, false), 1, 3);
+}
+
+TEST(AxisCapControl, RisesAfterAWhileAndOnlyIfThatIsProven) {
+    Bench bench;
+    bench.step(wish_of({.cap = 8, .mask = 1}));
+    const CapWish rapid = wish_of({}, true);
+    expect_order(bench.steps(100, rapid), 8, 1);
+    expect_order(bench.steps(200, rapid, false), 8, 1);
+    EXPECT_NEAR(bench.asked, 20, 2) << "every 10 ms";
+    expect_order(bench.steps(10, rapid), kCapRapid, 0);
+}
+
+TEST(AxisCapControl, WhileTheBoardSlowsDownItOrdersLessOnlyByHalf) {
+    Bench bench;
+    bench.step(wish_of({.cap = 20, .mask = 3}));
+    expect_order(bench.step(wish_of({.cap = 11, .mask = 3}), true, true, true), 20, 3);
+    expect_order(bench.step(wish_of({.cap = 10, .mask = 3}), true, true, true), 10, 3);
+    expect_order(bench.step(wish_of({.cap = 9, .mask = 7}), true, true, true), 9, 7);
+}
+
+TEST(AxisCapControl, CrawlsThenHoldsAndGoesOn) {
+    Bench bench;
+    const CapWish none{
+        .best = {.cap = 1, .mask = 0xFF}, .is_kept_fine = false, .is_any_proven = false};
+    expect_order(bench.step(none), kCapCrawl, 0xFF);
+    expect_order(bench.steps(100, none), kCapCrawl, 0xFF);
+    for (int i = 0; i < 5; ++i) {
+        bench.step(none, false, false);
+    }
+    expect_order(bench.control.order(), kCapHold, 0xFF);
+    expect_order(bench.steps(2500, none, false), kCapHold, 0xFF);
+    EXPECT_TRUE(bench.control.is_held(bench.now_us));
+    expect_order(bench.steps(12, none), kCapCrawl, 0xFF);
+}
+
+// Whatever the cycles say: `step` checks each order.
+TEST(AxisCapControl, NeverOrdersWhatIsNotProven) {
+    std::mt19937_64 random(test::printed_seed(2711));
+    Bench bench;
+    for (int i = 0; i < 200'000; ++i) {
+        const auto cap = static_cast<std::uint8_t>(1 + random() % kCapRapid);
+        CapWish wish = wish_of({.cap = cap, .mask = static_cast<std::uint8_t>(random() % 32)},
+                               random() % 4 != 0);
+        wish.is_any_proven = random() % 8 != 0;
+        if (!wish.is_any_proven) {
+            wish.best = {.cap = kCapCrawl, .mask = 0xFF};
+            wish.is_kept_fine = false;
+        }
+        bench.step(wish, random() % 2 == 0, random() % 2 == 0, random() % 3 == 0);
+    }
+    EXPECT_GT(bench.asked, 1000);
+}
+
+}  // namespace
+}  // namespace axg
