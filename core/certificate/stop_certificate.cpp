@@ -479,8 +479,8 @@ void StopCertificate::prove(const Engine& engine,
     if (status_ != SnapshotStatus::ok) {
         return;
     }
-    has_wider_ =
-        tries_longer(range) && bound_box(ladder_.samples, asks_raise_ ? raised_bound_ : speed_bound_);
+    has_wider_ = tries_longer(range) &&
+                 bound_box(ladder_.samples, asks_raise_ ? raised_bound_ : speed_bound_);
     const bool is_wider_path = is_path_known_;
     wider_box_ = box_;
     bool is_known = bound_box(range.least, speed_bound_);

@@ -231,10 +231,10 @@ class StopCertificate {
     std::uint64_t path_until_ = 0;                // sample up to which the path is queried
     JointBox box_;                                // that is queried
     std::span<const JointBox> queried_pieces_{};  // and in which pieces, where the path is known
-    PermitLadder ladder_, ladder_next_;  // what this cycle tries, and the next
-    std::uint8_t samples_;               // n that was proven
-    bool has_wider_ = false;  // it was tried
-    JointBox wider_box_;      // with it
+    PermitLadder ladder_, ladder_next_;           // what this cycle tries, and the next
+    std::uint8_t samples_;                        // n that was proven
+    bool has_wider_ = false;                      // it was tried
+    JointBox wider_box_;                          // with it
     std::uint32_t tool_ = kNoIndex;
     std::array<std::uint64_t, kToolsMax> tool_until_{};  // the first sample at which each of those
                                                          // before it counts no more
