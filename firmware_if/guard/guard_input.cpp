@@ -120,9 +120,12 @@ void GuardNode::on_receiver(const ReceiverEvent& event, std::int64_t now_us) noe
     if (event.kind == ReceiverEvent::Kind::snapshot) {
         ++counters_.snapshots;
         period_.follow(event.snapshot.arrived_us, guard_.phase != GuardPhase::armed);
-        if (owed_ == completed_ && period_.is_of_next(event.snapshot.arrived_us)) {
-            end_period(now_us);  // nothing more is expected in it
+        // Nothing more is expected in this period: its sample was heard, or is lost.
+        const bool is_over = owed_ == completed_ && (has_snapshot_ || event.samples_lost != 0);
+        if (is_over && period_.is_of_next(event.snapshot.arrived_us)) {
+            end_period(now_us);
         }
+        has_snapshot_ = true;
         submit(LiveQuery::Kind::snapshot, event, now_us);
         if (event.samples_lost != 0) {
             fail(GuardFault::input_noise, now_us);

@@ -151,6 +151,7 @@ void GuardNode::end_periods(std::int64_t until_us) noexcept {
 
 void GuardNode::end_period(std::int64_t now_us) noexcept {
     period_.advance();
+    has_snapshot_ = false;
     on({.kind = GuardEventKind::deadline}, now_us);
 }
 

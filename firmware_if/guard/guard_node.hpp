@@ -197,7 +197,8 @@ class GuardNode {
     Outbox outbox_;
     Handshake handshake_;
     PeriodClock period_;
-    AckLedger ledger_;  // of a board that keeps caps: what its samples name
+    bool has_snapshot_ = false;  // in this period
+    AckLedger ledger_;           // of a board that keeps caps: what its samples name
     SyncProducer sync_;
     LiveCounters counters_;
 
