@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hil_replay/motion/cell_search.hpp"
+
 namespace axg {
 
 namespace {
@@ -31,14 +33,6 @@ void CappedClock::begin(const std::vector<Cell>* cells,
     total_mm_ = is_at_end_ ? 0 : cells->back().start_mm + cells->back().length_mm;
 }
 
-std::size_t CappedClock::cell_at(double mm) const noexcept {
-    std::size_t cell = cell_;
-    while (cell + 1 < cells_->size() && (*cells_)[cell + 1].start_mm <= mm) {
-        ++cell;
-    }
-    return cell;
-}
-
 double CappedClock::step(double speed_share) noexcept {
     if (is_at_end_) {
         return total_mm_;
@@ -51,7 +45,7 @@ double CappedClock::step(double speed_share) noexcept {
     double speed = std::clamp(wanted, speed_ - change, speed_ + change);
     // The plan's own limits at the place that this step leads to: its cell's speed, and what can
     // still be braked for what comes behind it.
-    const Cell& ahead = (*cells_)[cell_at(reached_mm(speed))];
+    const Cell& ahead = (*cells_)[cell_at(*cells_, cell_, reached_mm(speed))];
     speed = std::min({speed, ahead.speed_max, speed_on_curve(ahead, at_mm_, speed_)});
     if (wanted <= 0 && speed <= 0) {  // it stands where it is, and goes on from there
         at_mm_ = std::min(reached_mm(0), total_mm_);
@@ -64,7 +58,7 @@ double CappedClock::step(double speed_share) noexcept {
         is_at_end_ = true;
         return total_mm_;
     }
-    cell_ = cell_at(at_mm_);
+    cell_ = cell_at(*cells_, cell_, at_mm_);
     while (rapid_ + 1 < rapids_->size() && (*rapids_)[rapid_].end_mm <= at_mm_) {
         ++rapid_;
     }

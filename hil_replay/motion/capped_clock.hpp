@@ -22,8 +22,6 @@ class CappedClock {
     [[nodiscard]] bool is_at_end() const noexcept { return is_at_end_; }
 
   private:
-    [[nodiscard]] std::size_t cell_at(double mm) const noexcept;
-
     const std::vector<Cell>* cells_ = nullptr;
     const std::vector<RapidCell>* rapids_ = nullptr;
     std::size_t cell_ = 0, rapid_ = 0;

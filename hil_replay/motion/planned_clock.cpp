@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hil_replay/motion/cell_search.hpp"
+
 namespace axg {
 
 namespace {
@@ -40,14 +42,6 @@ void PlannedClock::begin(const Run* run, const MotionLimits& limits,
     at_mm_ = speed_ = 0;
     is_at_end_ = cells->empty();
     total_mm_ = is_at_end_ ? 0 : cells->back().start_mm + cells->back().length_mm;
-}
-
-std::size_t PlannedClock::cell_at(double mm) const noexcept {
-    std::size_t cell = cell_;
-    while (cell + 1 < cells_->size() && (*cells_)[cell + 1].start_mm <= mm) {
-        ++cell;
-    }
-    return cell;
 }
 
 /// Every piece that averaging may still hold, and those ahead up to where the path could stop.
@@ -124,7 +118,7 @@ double PlannedClock::step(AxisShares& shares) noexcept {
     };
     double speed = std::max(wanted, speed_ - change);
     // The plan's own limits at the place that this step leads to.
-    const Cell& ahead = (*cells_)[cell_at(reached_mm(speed))];
+    const Cell& ahead = (*cells_)[cell_at(*cells_, cell_, reached_mm(speed))];
     const double planned =
         std::min({speed, ahead.speed_max,
                   speed_towards(ahead.start_mm + ahead.length_mm, ahead.speed_out,
@@ -141,7 +135,7 @@ double PlannedClock::step(AxisShares& shares) noexcept {
         is_at_end_ = true;
         return total_mm_;
     }
-    cell_ = cell_at(at_mm_);
+    cell_ = cell_at(*cells_, cell_, at_mm_);
     note_needs(shares);
     return at_mm_;
 }

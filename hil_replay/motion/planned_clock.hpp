@@ -33,7 +33,6 @@ class PlannedClock {
     void visit_ahead(const AxisShares& shares, Visit&& visit) noexcept;
     [[nodiscard]] double speed_within(const AxisShares& shares, double speed) noexcept;
     void note_needs(AxisShares& shares) noexcept;
-    [[nodiscard]] std::size_t cell_at(double mm) const noexcept;
 
     const Run* run_ = nullptr;
     const std::vector<Cell>* cells_ = nullptr;
