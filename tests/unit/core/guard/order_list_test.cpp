@@ -48,11 +48,13 @@ TEST(OrderList, IdleAxesAreBoundFirstAndTheFastestLast) {
 
 TEST(OrderList, WhatWasOrderedIsTriedAgain) {
     EXPECT_TRUE(has(list_orders(std::array{0.0, 10.0}, {.cap = 77, .mask = 2}), 77, 2));
-    for (const OrderTried& one : tried(list_orders(std::array{0.0, 10.0}, {}))) {
+    const OrderList free = list_orders(std::array{0.0, 10.0}, {});
+    for (const OrderTried& one : tried(free)) {
         EXPECT_LT(one.order.cap, kCapRapid);
         EXPECT_NE(one.order.mask, 0);
     }
-    for (const OrderTried& one : tried(list_orders(std::array{0.0, 0.0}, {.cap = 0, .mask = 3}))) {
+    const OrderList after_hold = list_orders(std::array{0.0, 0.0}, {.cap = 0, .mask = 3});
+    for (const OrderTried& one : tried(after_hold)) {
         EXPECT_GT(one.order.cap, kCapHold) << "a hold is no wish";
     }
 }
