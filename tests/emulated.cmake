@@ -14,8 +14,8 @@ foreach(kind unit property parity)
 endforeach()
 
 function(axg_emulated_tests)
-  add_custom_target(emulated_tests DEPENDS axguard axguard-lab axguardd axg_c guard_a_trace
-                    axg_lane_hash axg_make_scene unit_tests property_tests parity_tests)
+  add_custom_target(emulated_tests DEPENDS axguard axguardd axg_c guard_a_trace axg_lane_hash
+                    unit_tests property_tests parity_tests)
   foreach(kind unit property parity)
     string(REPLACE "|" ";" names "${AXG_EMULATED_${kind}}")
     foreach(name IN LISTS names)

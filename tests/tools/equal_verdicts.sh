@@ -57,8 +57,15 @@ mkdir -p "$folder"
 
 "$root/build/$1/tests/axg_make_scene" "$machine" "$folder/scene" --poses "$poses" --seed "$seed" \
     --near
+# A Jetson's build by day has no workbench; at night its packages bring it.
+asked=()
+for preset in "$@"; do
+    if [[ $preset != *jetson* || -x $root/build/$preset/axguard-lab ]]; then
+        asked+=("$preset")
+    fi
+done
 for ask in hit count clearance; do
-    for preset in "$@"; do
+    for preset in "${asked[@]}"; do
         program_of "$preset" axguard-lab query "$folder/scene" --engine cpu --ask "$ask" \
             --out "$folder/$preset-$ask.csv" >/dev/null
         cmp "$folder/$1-$ask.csv" "$folder/$preset-$ask.csv"
@@ -69,7 +76,7 @@ for ask in hit count clearance; do
         echo "equal_verdicts.sh: $folder/$1-$ask.csv has $lines lines, wanted over $poses" >&2
         exit 1
     fi
-    echo "$ask: $((lines - 1)) answers equal in $* (seed $seed)"
+    echo "$ask: $((lines - 1)) answers equal in ${asked[*]} (seed $seed)"
 done
 
 # The same program becomes the same trace, byte for byte, in every build and in a second run.

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// ctest-labels: long
 // The schema that editors use and the loader that decides must not drift apart: the same files, the
 // same keys.
 #if defined(__GNUC__) && !defined(__clang__)

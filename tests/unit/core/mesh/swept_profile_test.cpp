@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// ctest-labels: long
 // What a cutter sweeps: nothing that turns with it sticks out, told by winding numbers at points of
 // the surface turned by any angle; and it is not much larger than that, told by radii.
 #include "core/mesh/swept_profile.hpp"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// ctest-labels: long
 // Plans of the fixed shape, and what is chosen or refused at a deadline. Times are this machine's:
 // deadlines are so long, or so short, that they decide nothing.
 #include "firmware_if/setup/choose_plan.hpp"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// ctest-labels: long
 // The program within the data of a page: each block once and as text, the line of every row and
 // stop also where the program is too long for its steps, and nothing where no line is known.
 #include "hil_replay/page/page_program_json.hpp"
