@@ -103,7 +103,7 @@ day='|night'
 
 if [[ $all == no ]]; then
     "$root/setup.sh"
-    check_preset host-release "timing|slow|peer|night" -DAXG_PRECOMPILED=ON -DAXG_CUDA=ON
+    check_preset host-release "timing|slow|peer|night" -DAXG_CUDA=ON
     exit 0
 fi
 
@@ -114,8 +114,8 @@ step "cantools from PyPI" python3 -m pip install -q --disable-pip-version-check 
     -r "$root/tests/oracle/requirements.txt" || steps_failed=$((steps_failed - 1))
 # Kernels for one device: what they take of others is measured by device.kernel_budget, which
 # compiles them, and jetson-thor runs its packages through all checks.
-check_preset host-release "timing$day" -DAXG_WERROR=ON -DAXG_PRECOMPILED=ON -DAXG_BENCHMARKS=ON \
-    -DAXG_CUDA=ON -DAXG_CUDA_ARCHITECTURES=90-real
+check_preset host-release "timing$day" -DAXG_WERROR=ON -DAXG_BENCHMARKS=ON -DAXG_CUDA=ON \
+    -DAXG_CUDA_ARCHITECTURES=90-real
 # clang's code: by day the sanitizers' build, of libraries, programs, fuzz targets and unit tests.
 # What tries thousands of cases, or runs a whole program, takes minutes there.
 builds=(host-release host-asan)
@@ -128,9 +128,8 @@ else
     step "host-clang configure" configure_preset host-clang -DAXG_WERROR=ON # what clang-tidy reads
     check_labels host-asan "axguard-lab fuzz_targets axg_lane_hash" unit parity
 fi
-# A Jetson's build, run under emulators, at night with its workbench and packed. It compiles each
-# header anew, with all warnings. Its libraries come from Debian and PyPI: where there is no
-# network, there is no such build.
+# A Jetson's build, run under emulators; at night with its workbench, and packed. Its libraries come
+# from Debian and PyPI: where there is no network, there is no such build.
 if step "sysroot" "$root/toolchains/sysroot.sh" &&
     step "guest" "$root/toolchains/sysroot.sh" --guest &&
     step "CUDA for aarch64" "$root/toolchains/cuda_toolkit.sh" aarch64; then

@@ -11,11 +11,6 @@ set(AXG_CXX_OPTIONS -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -ff
 target_compile_options(axg_flags INTERFACE "$<$<COMPILE_LANGUAGE:CXX>:${AXG_CXX_OPTIONS}>")
 # What is linked is what is called: a package wants no library that its programs never use.
 target_link_options(axg_flags INTERFACE LINKER:--as-needed)
-# From a precompiled header GCC 12 no longer sees that <string> is a system header, and reports its
-# known false alarms (GCC bug 105651).
-if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  set(AXG_PRECOMPILED_OPTIONS -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow)
-endif()
 if(AXG_SHARED)  # the library's calls of itself are its own, and may be inlined as in a program
   target_compile_options(axg_flags INTERFACE
     $<$<COMPILE_LANGUAGE:CXX>:-fno-semantic-interposition>)
