@@ -24,6 +24,12 @@ if(AXG_SANITIZE)
     target_compile_options(axg_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-maybe-uninitialized>)
   endif()
 endif()
+# What reads options and writes text or JSON (rooms.cmake).
+if(AXG_SANITIZE)
+  set(AXG_TEXT_OPTIONS -O0)
+else()
+  set(AXG_TEXT_OPTIONS $<$<CONFIG:Release>:-O1>)
+endif()
 # None of these changes how a number is computed. What they cost:
 # docs/measurements/machine-files.md. check_packages.py looks for each in the finished files.
 if(AXG_HARDENING)

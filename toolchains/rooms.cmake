@@ -2,12 +2,14 @@
 # A room is a folder with one subject: one library of the same name, its files listed. What it links
 # is what it may include; tests/style/layers.py holds the includes to that, and to one direction.
 
-# axg_room([SOURCES FILE...] [ROOMS FOLDER...] [LIBRARIES LIBRARY...] [TEXT])
+# axg_room([SOURCES FILE...] [APART FILE...] [ROOMS FOLDER...] [LIBRARIES LIBRARY...] [TEXT])
 # The library axg_HOUSE_ROOM (axg::HOUSE_ROOM) of this folder. A room without sources has headers
 # alone. TEXT: it reads options and writes reports, whose templates take a third more to compile at
-# -O3, twice as much with sanitizers, and no time when they run; so does what writes JSON.
+# -O3, twice as much with sanitizers, and no time when they run; so does what writes JSON. APART:
+# these sources have names that others of the room have too, so that a build that compiles several
+# at once (AXG_UNITY) leaves them out.
 function(axg_room)
-  cmake_parse_arguments(room "TEXT" "" "SOURCES;ROOMS;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(room "TEXT" "" "SOURCES;APART;ROOMS;LIBRARIES" ${ARGN})
   axg_room_target(target "")
   set(links ${room_LIBRARIES})
   foreach(other IN LISTS room_ROOMS)
@@ -17,16 +19,17 @@ function(axg_room)
   if(room_SOURCES)
     add_library(${target} STATIC ${room_SOURCES})
     target_link_libraries(${target} PUBLIC axg::flags ${links})
-    set(text ${room_SOURCES})
-    if(NOT room_TEXT)
-      list(FILTER text INCLUDE REGEX "_json\\.cpp$")
+    if(room_TEXT)
+      target_compile_options(${target} PRIVATE ${AXG_TEXT_OPTIONS})
     endif()
-    if(AXG_SANITIZE)
-      set_property(SOURCE ${text} APPEND PROPERTY COMPILE_OPTIONS -O0)
-    else()
-      set_property(SOURCE ${text} APPEND PROPERTY COMPILE_OPTIONS $<$<CONFIG:Release>:-O1>)
+    if(target MATCHES "^axg_core_")
+      target_compile_options(${target} PRIVATE -fno-exceptions -fno-rtti)
     endif()
-    axg_precompile(${target})
+    set(json ${room_SOURCES})
+    list(FILTER json INCLUDE REGEX "_json\\.cpp$")
+    set_source_files_properties(${json} PROPERTIES COMPILE_OPTIONS "${AXG_TEXT_OPTIONS}")
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ${AXG_UNITY} UNITY_BUILD_BATCH_SIZE 16)
+    set_source_files_properties(${room_APART} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
     set_property(GLOBAL APPEND PROPERTY AXG_ROOMS ${target})
   else()
     add_library(${target} INTERFACE)
@@ -35,29 +38,6 @@ function(axg_room)
   string(REGEX REPLACE "^axg_" "axg::" alias ${target})
   add_library(${alias} ALIAS ${target})
   set(AXG_ROOM ${target} PARENT_SCOPE)
-endfunction()
-
-# One precompiled header for the rooms of core, which never throw, and one for all others. With
-# clang alone (AXG_PRECOMPILED): GCC 12 reports false alarms in <string> from one (GCC bug 105651).
-function(axg_precompile target)
-  set(header axg_precompiled)
-  set(options)
-  if(target MATCHES "^axg_core_")
-    set(header axg_precompiled_core)
-    set(options -fno-exceptions -fno-rtti)
-    target_compile_options(${target} PRIVATE ${options})
-  endif()
-  if(NOT AXG_PRECOMPILED)
-    return()
-  endif()
-  if(NOT TARGET ${header})
-    file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/precompiled.cpp CONTENT "")
-    add_library(${header} OBJECT ${PROJECT_BINARY_DIR}/precompiled.cpp)
-    target_link_libraries(${header} PRIVATE axg::flags)
-    target_compile_options(${header} PRIVATE ${options})
-    target_precompile_headers(${header} PRIVATE ${PROJECT_SOURCE_DIR}/toolchains/precompiled.hpp)
-  endif()
-  target_precompile_headers(${target} REUSE_FROM ${header})
 endfunction()
 
 # The name of a room's library: of the folder given, or of this one.
