@@ -98,13 +98,13 @@ check_tests() { # PRESET CTEST_OPTION...
 }
 
 # What is left out: by day what takes longest, which says little more than the rest does. And at
-# night each source is compiled by itself, so that it includes what it uses.
+# night the builds that are not shipped compile each source by itself too.
 day='|night' unity=-DAXG_UNITY=ON
 [[ $night == no ]] || day='' unity=-DAXG_UNITY=OFF
 
 if [[ $all == no ]]; then
     "$root/setup.sh"
-    check_preset host-release "timing|slow|peer|night" -DAXG_UNITY=ON -DAXG_CUDA=ON
+    check_preset host-release "timing|slow|peer|night" -DAXG_CUDA=ON
     exit 0
 fi
 
@@ -115,7 +115,7 @@ step "cantools from PyPI" python3 -m pip install -q --disable-pip-version-check 
     -r "$root/tests/oracle/requirements.txt" || steps_failed=$((steps_failed - 1))
 # Kernels for one device: what they take of others is measured by device.kernel_budget, which
 # compiles them, and jetson-thor runs its packages through all checks.
-check_preset host-release "timing$day" -DAXG_WERROR=ON $unity -DAXG_BENCHMARKS=ON -DAXG_CUDA=ON \
+check_preset host-release "timing$day" -DAXG_WERROR=ON -DAXG_BENCHMARKS=ON -DAXG_CUDA=ON \
     -DAXG_CUDA_ARCHITECTURES=90-real
 # clang's code: by day the sanitizers' build, of libraries, programs, fuzz targets and unit tests.
 # What tries thousands of cases, or runs a whole program, takes minutes there.

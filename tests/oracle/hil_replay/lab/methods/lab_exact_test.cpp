@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// ctest-labels: night
 // The laboratory's methods in exact rationals: the same templates that are compiled for float and
 // double, with nothing rounded and every threshold zero. What they get wrong in float is then
 // rounding or their own rule, not our bug. The judge is a distance without any rounding. AXG_COUNT:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ctest-labels: data
+// ctest-labels: data night
 // The certified methods on the cases made elsewhere, through `axguard-lab accuracy` and the checker
 // that came with the cases: no missed contact, nothing undecided but close pairs, no distance too
 // large.
