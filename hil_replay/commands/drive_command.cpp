@@ -127,7 +127,7 @@ DriveResult run_observed(const DriveArguments& arguments, const Machine& machine
         const AxisSnapshot& snapshot = chain.snapshot();
         if (page != nullptr && snapshot.axis_count != 0 && snapshot.latched_us != noted_us) {
             noted_us = snapshot.latched_us;  // a lost sample leaves the snapshot as it was
-            page->note(snapshot, {.has_permit = guard.has_permit()});
+            page->note(snapshot, page_cycle(guard.has_permit(), guard.result()));
         }
         return true;
     };

@@ -96,8 +96,10 @@ void note_cycle(Outputs& outputs, const ReplayCycle& cycle) {
         outputs.csv->on_cycle(cycle, outputs.clearances->at(cycle.snapshot).mm);
     }
     if (outputs.page) {
-        outputs.page->note(cycle.snapshot,
-                           {cycle.sent_permit, cycle.spent_ns, cycle.clearance_level()});
+        PageCycle noted = page_cycle(cycle.sent_permit, cycle.result);
+        noted.spent_ns = cycle.spent_ns;
+        noted.clearance_level = cycle.clearance_level();
+        outputs.page->note(cycle.snapshot, noted);
     }
     if (outputs.program) {
         outputs.program->add(cycle.snapshot);

@@ -216,7 +216,9 @@ class RunPage {
     const pair = samples.pair[this.row], least = samples.clearance_mm[this.row];
     if (pair !== null) lines.push(`${machine.pairs[pair].name}: ${least.toFixed(3)} mm`);
     const hasPermit = !stop && samples.permit[this.row] >= PERMIT_GONE;
-    lines.push(hasPermit ? "permit" : "no permit");
+    const valid = samples.valid_periods[this.row], cap = samples.cap_percent[this.row];
+    lines.push(!hasPermit ? "no permit" : valid === null ? "permit" : `permit for ${valid} periods`);
+    if (hasPermit && cap !== null && cap < 100) lines.push(`cap: ${cap.toFixed(1)} % of rapid`);
     const level = LEVELS[samples.level[this.row]];
     if (level !== "clear") lines.push(`level: ${level}`);
     if (stop) lines.push(`${stop.isWithheld ? "NO PERMIT" : "STOP"}: ${stop.reason}`);

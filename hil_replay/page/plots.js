@@ -56,15 +56,11 @@ class Plots {
     this.addAxes();
     this.addSpeeds();
     this.addPermit();
-    if (data.samples.cycle_us.some((value) => value !== null)) {
-      this.addCycles();
-      this.addHistogram();
-    } else {
-      for (const id of ["title_cycles", "legend_cycles", "plot_cycles", "title_histogram",
-                        "plot_histogram"]) {
-        document.getElementById(id).hidden = true;
-      }
-    }
+    const {cycle_us: cycles, valid_periods: valid, cap_percent: cap} = data.samples;
+    this.addOrHide(cycles, "cycles", () => this.addCycles(cycles));
+    this.addOrHide(cycles, "histogram", () => this.addHistogram());
+    this.addOrHide(valid, "valid", () => this.addSteps("plot_valid", "periods", valid, 15.5));
+    this.addOrHide(cap, "cap", () => this.addSteps("plot_cap", "% of rapid", cap, 105));
     window.addEventListener("resize", () => this.setTime(this.time));
   }
 
@@ -109,13 +105,27 @@ class Plots {
   }
 
   addPermit() {
-    const {permit} = this.data.samples;
-    this.add("plot_permit", ["permit"], (i) => [permit[i]],
-             {stepPlot: true, fillGraph: true, valueRange: [0, 1.15]});
+    this.addSteps("plot_permit", "permit", this.data.samples.permit, 1.15);
   }
 
-  addCycles() {
-    const spent = this.data.samples.cycle_us;
+  addSteps(id, name, values, most) {
+    this.add(id, [name], (i) => [values[i]],
+             {stepPlot: true, fillGraph: true, valueRange: [0, most]});
+  }
+
+  /** A plot of a column that has no value in this run is left out. */
+  addOrHide(column, name, add) {
+    if (column.some((value) => value !== null)) {
+      add();
+      return;
+    }
+    for (const part of ["title", "legend", "plot"]) {
+      const element = document.getElementById(`${part}_${name}`);
+      if (element) element.hidden = true;
+    }
+  }
+
+  addCycles(spent) {
     this.add("plot_cycles", ["slowest"], (i) => [spent[i]],
              {levels: [this.data.deadline_us], logscale: true});
   }

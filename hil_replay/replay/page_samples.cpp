@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kLeastColumn = 1;  // "clearance_mm", by which a row chooses its sample
-constexpr std::size_t kPairColumn = 2, kToolColumn = 5, kFirstAxis = 9, kColumnsOfAxis = 5;
+constexpr std::size_t kPairColumn = 2, kToolColumn = 5, kFirstAxis = 11, kColumnsOfAxis = 5;
 
 double shown_unit(const Axis& axis) {
     return axis.kind == AxisKind::rotary ? 180.0 / kPi : 1.0;
@@ -46,11 +46,22 @@ void merge(std::span<const PageColumn> columns, std::span<double> a, std::span<c
 
 }  // namespace
 
+PageCycle page_cycle(bool has_permit, const CycleResult& result) {
+    PageCycle cycle{.has_permit = has_permit};
+    if (has_permit) {
+        cycle.valid_periods = result.samples;
+        cycle.cap = result.has_cap ? std::optional(result.cap_order.cap) : std::nullopt;
+    }
+    return cycle;
+}
+
 PageSamples::PageSamples(const Machine& machine, std::size_t rows_max)
     : machine_(machine), rows_max_(rows_max) {
-    columns_ = {{"time_s", Keep::shown},     {"clearance_mm", Keep::least}, {"pair", Keep::shown},
-                {"triangle_a", Keep::shown}, {"triangle_b", Keep::shown},   {"tool", Keep::shown},
-                {"permit", Keep::least},     {"cycle_us", Keep::most},      {"level", Keep::least}};
+    columns_ = {
+        {"time_s", Keep::shown},        {"clearance_mm", Keep::least}, {"pair", Keep::shown},
+        {"triangle_a", Keep::shown},    {"triangle_b", Keep::shown},   {"tool", Keep::shown},
+        {"permit", Keep::least},        {"cycle_us", Keep::most},      {"level", Keep::least},
+        {"valid_periods", Keep::least}, {"cap_percent", Keep::least}};
     for (const Axis& axis : machine.axes) {
         const char* unit = axis.kind == AxisKind::rotary ? "deg" : "mm";
         columns_.push_back({axis.name + "_" + unit, Keep::shown});
@@ -80,7 +91,9 @@ void PageSamples::add(const AxisSnapshot& snapshot, const PageCycle& cycle,
              static_cast<double>(snapshot.tool),
              cycle.has_permit ? 1.0 : 0.0,
              cycle.spent_ns != 0 ? static_cast<double>(cycle.spent_ns) * 1e-3 : kNothing,
-             static_cast<double>(cycle.clearance_level)};
+             static_cast<double>(cycle.clearance_level),
+             cycle.valid_periods != 0 ? cycle.valid_periods : kNothing,
+             cycle.cap ? 100.0 * *cycle.cap / kCapRapid : kNothing};
     const double seconds = static_cast<double>(snapshot.latched_us - last_.latched_us) * 1e-6;
     for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
         const Axis& axis = machine_.axes[i];

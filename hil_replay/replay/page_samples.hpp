@@ -8,12 +8,14 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/collision/engine.hpp"
 #include "core/guard/margin_state.hpp"
+#include "core/guard/monitor.hpp"
 #include "core/machine/axis_snapshot.hpp"
 #include "core/machine/machine.hpp"
 
@@ -40,7 +42,14 @@ struct PageCycle {
     bool has_permit = false;
     std::int64_t spent_ns = 0;  // 0: not measured
     ClearanceLevel clearance_level = ClearanceLevel::clear;
+    // Of the permit: periods for which it is proven (0: none, or not known), and the cap that it
+    // orders, 1/250 of rapid, where it orders one.
+    std::uint8_t valid_periods = 0;
+    std::optional<std::uint8_t> cap{};
 };
+
+/// With what the permit of this result says.
+[[nodiscard]] PageCycle page_cycle(bool has_permit, const CycleResult& result);
 
 // Of the first losses of the permit, and of the end of the run, this many samples before and after
 // have rows of their own.

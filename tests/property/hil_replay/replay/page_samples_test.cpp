@@ -43,6 +43,8 @@ Sample random_sample(std::mt19937_64& random, std::uint64_t index) {
     out.snapshot.position[0] = number(random);
     out.snapshot.position[1] = number(random);
     out.cycle.has_permit = random() % 4 != 0;
+    out.cycle.valid_periods = static_cast<std::uint8_t>(3 + random() % 10);
+    out.cycle.cap = static_cast<std::uint8_t>(random() % 251);
     out.cycle.spent_ns = 1000 + static_cast<std::int64_t>(random() % 100'000);
     for (int i = 0; i < 2; ++i) {
         const double mm = 20 * std::abs(number(random));
@@ -82,6 +84,9 @@ void expect_row(const PageSamples& page, std::size_t row, std::span<const Sample
     EXPECT_EQ(at("X_least_mm"), least(x));
     EXPECT_EQ(at("X_most_mm"), -least([&](const Sample& s) { return -x(s); }));
     EXPECT_EQ(at("permit"), least([](const Sample& s) { return s.cycle.has_permit ? 1.0 : 0.0; }));
+    EXPECT_EQ(at("valid_periods"),
+              least([](const Sample& s) { return double{s.cycle.valid_periods}; }));
+    EXPECT_EQ(at("cap_percent"), least([](const Sample& s) { return 0.4 * *s.cycle.cap; }));
     EXPECT_EQ(at("cycle_us"), -least([](const Sample& s) {
                   return -static_cast<double>(s.cycle.spent_ns) * 1e-3;
               }));
