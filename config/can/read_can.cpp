@@ -272,7 +272,8 @@ void read_period(MapReader& reader, CanLayout& can) {
 }
 
 /// One number, or the least and the most.
-void read_permit_samples(MapReader& reader, CanLayout& can, FaultList& faults) {
+void read_permit_samples(MapReader& reader, MachineDraft& draft) {
+    CanLayout& can = draft.machine.can;
     // A hole of 9 classical samples counts as late already, and one of 16 looks like none. With one
     // sample no permit is ever a period ahead of its end.
     const WholeRange range{2, can.format == CanFormat::classical ? 12U : 15U};
@@ -280,6 +281,7 @@ void read_permit_samples(MapReader& reader, CanLayout& can, FaultList& faults) {
                                std::to_string(range.max) + ", or two of them: [least, most]";
     can.permit_samples = can.permit_version == 2 ? kPermitSamplesUsual : PermitSamples{};
     const YamlNode* node = reader.find("permit_samples", Need::optional, wanted);
+    draft.states_permit_samples = node != nullptr;
     if (node == nullptr) {
         return;
     }
@@ -293,7 +295,7 @@ void read_permit_samples(MapReader& reader, CanLayout& can, FaultList& faults) {
     std::array<std::uint32_t, 2> ends{};
     for (std::size_t i = 0; i < ends.size(); ++i) {
         const YamlNode& one = is_list ? node->entries[i].value : *node;
-        if (!read_whole({one, path, faults}, range, false, ends[i])) {
+        if (!read_whole({one, path, draft.faults}, range, false, ends[i])) {
             return;
         }
     }
@@ -454,7 +456,7 @@ void read_can(MapReader& top, MachineDraft& draft) {
     read_dbc(reader, draft);
     read_drives(reader, draft);
     read_permit_version(reader, draft.machine.can);
-    read_permit_samples(reader, draft.machine.can, draft.faults);
+    read_permit_samples(reader, draft);
     read_receiver_rules(reader, draft.machine.can);
     read_hashes(reader, draft.machine.can);
     read_frame_ids(reader, draft);

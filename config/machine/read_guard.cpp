@@ -71,7 +71,8 @@ void read_jog(MapReader& guard_reader, MachineDraft& draft) {
 }
 
 /// What an enforced cap needs of the frames: a permit that says it, a sample that acknowledges it.
-void read_cap(MapReader& reader, Machine& machine) {
+void read_cap(MapReader& reader, MachineDraft& draft) {
+    Machine& machine = draft.machine;
     constexpr std::array<std::string_view, 3> kCaps{"none", "all_axes", "per_axis"};
     std::size_t cap = 0;
     if (!reader.choice("cap", Need::optional, kCaps, cap) || cap == 0) {
@@ -90,13 +91,16 @@ void read_cap(MapReader& reader, Machine& machine) {
     } else if (!tries_longer(can.permit_samples)) {
         reader.report(
             "cap", found + " with one number as can.permit_samples",
-            "none, or two numbers, such as [3, 12]; the cap falls where the longer permit "
+            "none, or two numbers, such as [8, 12]; the cap falls where the longer permit "
             "is not proven");
     } else if (can.look_ahead_samples != 0) {
         reader.report("cap", found + " with can.ahead",
                       "none, or no ahead; the look-ahead path bounds the motion already");
     } else {
         machine.guard.cap = static_cast<CapPromise>(cap);
+        if (!draft.states_permit_samples) {
+            machine.can.permit_samples = kPermitSamplesCapped;
+        }
     }
 }
 
@@ -185,7 +189,7 @@ void read_guard(MapReader& top, MachineDraft& draft) {
     if (reader.number("cap_lead_ms", Need::optional, {0, 1000}, value)) {
         out.cap_lead_s = value / 1e3;
     }
-    read_cap(reader, draft.machine);
+    read_cap(reader, draft);
     read_clearance_levels(reader, draft.usual_clearance_levels);
     reader.number("level_band_mm", Need::optional, {0, 100}, out.level_band_mm);
     reader.whole("level_hold_samples", Need::optional, {1, 100'000}, out.level_hold_samples);

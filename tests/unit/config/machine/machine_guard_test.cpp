@@ -376,7 +376,7 @@ TEST(MachineGuard, ACapIsRefusedWhereNothingWouldKeepIt) {
     EXPECT_EQ(faults_of(with(capped, "  stale_after_us: 3000\n",
                              "  stale_after_us: 12000\n  permit_samples: 10\n")),
               "m:37: guard.cap: invalid value (found all_axes with one number as "
-              "can.permit_samples, expected none, or two numbers, such as [3, 12]). The cap falls "
+              "can.permit_samples, expected none, or two numbers, such as [8, 12]). The cap falls "
               "where the longer permit is not proven.\n");
     const std::string ahead = test::with_can(
         with(test::content_of(test::kPaperMachine), "\nguard:\n", "\nguard:\n  cap: all_axes\n"),
@@ -384,6 +384,21 @@ TEST(MachineGuard, ACapIsRefusedWhereNothingWouldKeepIt) {
     EXPECT_NE(faults_of(ahead).find("guard.cap: invalid value (found all_axes with can.ahead, "),
               std::string::npos)
         << faults_of(ahead);
+}
+
+TEST(MachineGuard, ACapMakesTheLeastPermitLongerWhereTheFileStatesNone) {
+    const auto least = [](const std::string& text) {
+        Machine machine;
+        EXPECT_TRUE(parse_machine(text, "m", machine).empty()) << faults_of(text);
+        return int{machine.can.permit_samples.least};
+    };
+    const std::string cap =
+        with(kSmallMachine, "speed_cap: false", "speed_cap: false, cap: all_axes");
+    EXPECT_EQ(least(kSmallMachine), 3);
+    EXPECT_EQ(least(cap), 8);
+    EXPECT_EQ(least(with(cap, "  stale_after_us: 3000\n",
+                         "  stale_after_us: 12000\n  permit_samples: [4, 12]\n")),
+              4);
 }
 
 TEST(MachineGuard, WordsOfTheFaults) {
