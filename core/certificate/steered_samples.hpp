@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a cap of single axes is steered for. Where it is the least of the machine file, the
+// What an enforced cap is steered for. Where it is the least of the machine file, the
 // certificate proves it with all that a cycle has.
 #pragma once
 

@@ -454,7 +454,7 @@ void StopCertificate::take_wider() noexcept {
     samples_ = are_all_proven ? ladder_.samples : range.least;
     if (!keeps_cap()) {
         ladder_next_ = ladder_.next(range, are_all_proven);
-    } else if (machine_->guard.cap == CapPromise::per_axis) {
+    } else {
         ladder_next_ = ladder_.next({range.least, samples_work(range)}, are_all_proven);
         ladder_next_.samples = std::max(ladder_next_.samples, samples_steered(range));
     }

@@ -3,80 +3,93 @@
 
 #include <algorithm>
 
+#include "core/guard/order_list.hpp"
+
 namespace axg {
 namespace {
 
-constexpr std::uint32_t kRaiseShare = 32;
+constexpr CapOrder kCrawlOfAll{.cap = kCapCrawl, .mask = kMaskOfAll};
+constexpr std::uint32_t kUnproven = 4;  // cycles: every longer validity was tried
+
+bool are_same(const CapOrder& a, const CapOrder& b) noexcept {
+    return a.cap == b.cap && a.mask == b.mask;
+}
 
 }  // namespace
 
-std::uint8_t CapControl::raised_cap() const noexcept {
-    const std::uint32_t cap = order_.cap;
-    return static_cast<std::uint8_t>(
-        std::min<std::uint32_t>(kCapRapid, cap + std::max(1U, cap / kRaiseShare)));
+bool is_within(const CapOrder& order, const AxisCaps& caps) noexcept {
+    return higher_caps(caps_of_permit(order.cap, order.mask), caps) == caps;
 }
 
-/// An eighth more than what is in force. Of hold nothing is wished for: the proof of a crawl is
-/// enough.
-bool CapControl::has_room(std::uint8_t wanted) const noexcept {
-    return wanted == kCapRapid || 8U * wanted >= 9U * order_.cap;
+CapOrder lower_order(const CapOrder& a, const CapOrder& b) noexcept {
+    return {.cap = std::min(a.cap, b.cap), .mask = static_cast<std::uint8_t>(a.mask | b.mask)};
 }
 
-bool CapControl::asks_raise(std::int64_t sample_us) const noexcept {
-    const auto is_over = [sample_us](std::int64_t since_us) {
-        return since_us == INT64_MIN || sample_us - since_us >= kCapRaiseUs;
-    };
-    return promise_ != CapPromise::none && order_.cap < kCapRapid && has_room_ &&
-           sample_us - room_since_us_ >= kCapRoomUs && is_over(raised_us_) && is_over(asked_us_);
+bool CapControl::asks(std::int64_t sample_us) const noexcept {
+    return has_asked_ &&
+           (is_urgent_ || asked_us_ == INT64_MIN || sample_us - asked_us_ >= kCapRaiseUs);
 }
 
-void CapControl::fall(const CapCycle& cycle) noexcept {
-    const std::uint8_t before = order_.cap;
-    order_.mask = kMaskOfAll;
-    std::uint32_t cap = std::min(before, cycle.wanted);
-    if (!cycle.is_proven) {  // no wish explains it: a quarter less a cycle
-        cap = std::min(cap, before * 3U / 4);
-    }
-    // From more than a crawl the first step is down to it: hold is for what a crawl cannot.
-    const std::uint32_t least = before > kCapCrawl ? kCapCrawl : kCapHold;
-    order_.cap = static_cast<std::uint8_t>(std::max(cap, least));
-    if (order_.cap == kCapHold) {
+void CapControl::ask(const CapOrder& order, bool is_urgent) noexcept {
+    asked_ = order;
+    has_asked_ = true;
+    is_urgent_ = is_urgent;
+}
+
+/// Nothing that was looked at is proven: all axes crawl, and where the proof of that fails too they
+/// are held.
+void CapControl::crawl(const CapCycle& cycle) noexcept {
+    if (!are_same(order_, kCrawlOfAll)) {
+        order_ = kCrawlOfAll;
+    } else if (unproven_ > kUnproven) {
+        order_.cap = kCapHold;
         held_since_us_ = cycle.sample_us;
     }
 }
 
-void CapControl::rise(const CapCycle& cycle) noexcept {
-    order_.cap = raised_cap();
-    raised_us_ = cycle.sample_us;
-    if (order_.cap == kCapRapid) {
-        order_.mask = 0;
+void CapControl::fall(const CapCycle& cycle) noexcept {
+    has_room_ = has_asked_ = is_urgent_ = false;
+    if (!cycle.wish.is_any_proven) {
+        crawl(cycle);
+        return;
+    }
+    const CapOrder& wish = cycle.wish.best;
+    const bool binds_more = (wish.mask & ~order_.mask) != 0;
+    if (cycle.is_slowing && !binds_more && 2 * wish.cap > order_.cap) {
+        return;  // each further order begins the wait for its acknowledgement anew
+    }
+    if (is_within(wish, cycle.proven)) {
+        order_ = wish;
+    } else if (!cycle.is_asked) {  // some axis gets a higher cap
+        ask(wish, true);
+    } else {
+        order_ = lower_order(order_, wish);
     }
 }
 
 CapOrder CapControl::update(const CapCycle& cycle) noexcept {
-    if (promise_ == CapPromise::none) {
+    asked_us_ = cycle.is_asked ? cycle.sample_us : asked_us_;
+    unproven_ = cycle.is_proven ? 0 : unproven_ + 1;
+    const bool is_wanted = !cycle.wish.is_kept_fine || has_room_ || order_.cap == kCapHold;
+    if (cycle.is_asked && is_wanted && is_within(asked_, cycle.proven)) {
+        order_ = asked_;
+        has_asked_ = is_urgent_ = false;
         return order_;
     }
-    const std::uint32_t cap = order_.cap;
-    const bool is_wish_lower = 16U * cycle.wanted < 15U * cap;
-    // What is wished for looks ahead, and with fewer boxes than the proof: alone it ends no crawl.
-    const bool is_crawling = cap == kCapCrawl && (cycle.wanted >= kCapCrawl || cycle.is_proven);
-    if ((is_wish_lower || !cycle.is_proven) && cap != kCapHold && !is_crawling) {
-        has_room_ = false;
+    if (order_.cap == kCapHold) {
+        ask(kCrawlOfAll, false);
+        return order_;
+    }
+    if (!cycle.wish.is_kept_fine) {
         fall(cycle);
         return order_;
     }
-    asked_us_ = cycle.is_raise_asked ? cycle.sample_us : asked_us_;
     const bool had_room = has_room_;
-    has_room_ = cycle.is_proven && has_room(cycle.wanted);
-    if (!had_room) {
-        room_since_us_ = cycle.sample_us;
-    }
-    const bool is_due = has_room_ && cap < kCapRapid &&
-                        cycle.sample_us - room_since_us_ >= kCapRoomUs &&
-                        (raised_us_ == INT64_MIN || cycle.sample_us - raised_us_ >= kCapRaiseUs);
-    if (is_due && cycle.is_raise_proven) {
-        rise(cycle);
+    has_room_ = !are_same(cycle.wish.best, order_);
+    room_since_us_ = had_room ? room_since_us_ : cycle.sample_us;
+    has_asked_ = has_room_ && cycle.sample_us - room_since_us_ >= kCapRoomUs;
+    if (has_asked_) {
+        ask(cycle.wish.best, false);
     }
     return order_;
 }

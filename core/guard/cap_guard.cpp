@@ -41,10 +41,7 @@ bool CapGuard::is_above() const noexcept {
 }
 
 bool CapGuard::asks_raise() const noexcept {
-    if (is_per_axis()) {
-        return facts_.status == AckStatus::known && axis_control_.asks(latched_us_);
-    }
-    return facts_.status == AckStatus::known && !is_above() && control_.asks_raise(latched_us_);
+    return facts_.status == AckStatus::known && control_.asks(latched_us_);
 }
 
 /// Since an earlier sample it has come farther than any cap allows that may have been in force.
@@ -114,36 +111,11 @@ void CapGuard::bound(StopCertificate& certificate) const noexcept {
         return std::span<const double>(speeds.data(), machine_->axes.size());
     };
     certificate.bound_speeds(speeds_at(bound_caps(order())));
-    if (asks_raise() && is_per_axis()) {
-        const CapOrder& asked = axis_control_.asked();
+    if (asks_raise()) {
+        const CapOrder& asked = control_.asked();
         certificate.ask_raise(
             speeds_at(higher_caps(bound_caps(order()), caps_of_permit(asked.cap, asked.mask))));
-    } else if (asks_raise()) {
-        const CapOrder raised{.cap = control_.raised_cap(), .mask = control_.order().mask};
-        certificate.ask_raise(speeds_at(bound_caps(raised)));
     }
-}
-
-/// Whatever it orders was proven: the bounds of the proof were no lower.
-void CapGuard::order_next(const StopCycle& cycle, const std::uint8_t* wanted) noexcept {
-    const CapOrder before = control_.order();
-    const bool has_raise = asks_raise();
-    const bool is_raise_proven = has_raise && cycle.is_longer_proven;
-    const AxisCaps proven = bound_caps(
-        is_raise_proven ? CapOrder{.cap = control_.raised_cap(), .mask = before.mask} : before);
-    // In place of the cap in force a raise was asked about: that is done only where the cap was
-    // proven for long. And while the board still slows down, what is not proven of the speeds that
-    // it may have is no reason to order less.
-    const bool is_slowing = is_above();
-    const std::uint8_t wish = wanted != nullptr ? *wanted : before.cap;
-    const CapOrder order =
-        control_.update({.sample_us = latched_us_,
-                         .wanted = is_slowing ? std::min(wish, before.cap) : wish,
-                         .is_proven = has_raise || is_slowing || cycle.is_longer_proven,
-                         .is_raise_proven = is_raise_proven,
-                         .is_raise_asked = has_raise});
-    AXG_ASSERT(higher_caps(proven, bound_caps(order)) == proven);
-    note_fall(before);
 }
 
 void CapGuard::note_fall(const CapOrder& before) noexcept {
@@ -152,36 +124,35 @@ void CapGuard::note_fall(const CapOrder& before) noexcept {
     fell_us_ = higher_caps(was, is) != is ? latched_us_ : fell_us_;
 }
 
-/// The same of single axes.
-void CapGuard::order_next_axes(const StopCycle& cycle, const CapWish* wish) noexcept {
+/// Whatever it orders was proven: the bounds of the proof were no lower.
+void CapGuard::order_next(const StopCycle& cycle, const CapWish* wish) noexcept {
     const CapOrder before = order();
     const bool is_asked = asks_raise();
     AxisCaps proven = bound_caps(before);
     if (is_asked && cycle.is_longer_proven) {
-        const CapOrder& asked = axis_control_.asked();
+        const CapOrder& asked = control_.asked();
         proven = higher_caps(proven, caps_of_permit(asked.cap, asked.mask));
     }
     const bool is_slowing = is_above();
     const CapOrder next =
-        axis_control_.update({.sample_us = latched_us_,
-                              .wish = wish != nullptr ? *wish : CapWish{.best = before},
-                              .is_proven = is_asked || is_slowing || cycle.is_longer_proven,
-                              .is_slowing = is_slowing,
-                              .is_asked = is_asked,
-                              .proven = proven});
+        control_.update({.sample_us = latched_us_,
+                         .wish = wish != nullptr ? *wish : CapWish{.best = before},
+                         .is_proven = is_asked || is_slowing || cycle.is_longer_proven,
+                         .is_slowing = is_slowing,
+                         .is_asked = is_asked,
+                         .proven = proven});
     AXG_ASSERT(higher_caps(proven, bound_caps(next)) == proven);
     note_fall(before);
 }
 
-void CapGuard::judge(const StopCycle& cycle, const std::uint8_t* wanted, bool is_armed,
-                     CycleResult& result, const CapWish* wish) noexcept {
+void CapGuard::judge(const StopCycle& cycle, const CapWish* wish, bool is_armed,
+                     CycleResult& result) noexcept {
     if (!is_on()) {
         return;
     }
     if (!is_armed) {  // nothing is ordered any more: from the next proof on, every axis is at rapid
         result.has_permit = result.has_permit && order().cap == kCapRapid;
-        control_ = CapControl(machine_->guard.cap);
-        axis_control_ = AxisCapControl();
+        control_ = CapControl();
     } else if (!cycle.is_jog) {
         watch_answer();
         if (broken_.kind != CapBreak::none && !result.is_stop) {
@@ -191,17 +162,14 @@ void CapGuard::judge(const StopCycle& cycle, const std::uint8_t* wanted, bool is
             result.pair = kNoIndex;
             result.cap_fact = broken_;
         }
-        if (result.has_permit && cycle.is_settled && is_per_axis()) {
-            order_next_axes(cycle, wish);
-        } else if (result.has_permit && cycle.is_settled) {
-            order_next(cycle, wanted);
+        if (result.has_permit && cycle.is_settled) {
+            order_next(cycle, wish);
         }
     }
     broken_ = {};
     result.has_cap = true;
     result.cap_order = order();
-    result.is_held = is_armed && (is_per_axis() ? axis_control_.is_held(latched_us_)
-                                                : control_.is_held(latched_us_));
+    result.is_held = is_armed && control_.is_held(latched_us_);
 }
 
 }  // namespace axg

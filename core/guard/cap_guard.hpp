@@ -11,10 +11,8 @@
 #include "core/base/limits.hpp"
 #include "core/certificate/stop_certificate.hpp"
 #include "core/guard/ack_ledger.hpp"
-#include "core/guard/axis_cap_control.hpp"
 #include "core/guard/cap_control.hpp"
 #include "core/guard/monitor.hpp"
-#include "core/guard/speed_advisory.hpp"
 #include "core/machine/axis_snapshot.hpp"
 #include "core/machine/machine.hpp"
 
@@ -26,8 +24,7 @@ namespace axg {
 class CapGuard {
   public:
     /// `machine` must outlive it.
-    explicit CapGuard(const Machine& machine) noexcept
-        : machine_(&machine), control_(machine.guard.cap) {}
+    explicit CapGuard(const Machine& machine) noexcept : machine_(&machine) {}
 
     [[nodiscard]] bool is_on() const noexcept {
         return !is_ignored_ && machine_->guard.cap != CapPromise::none;
@@ -49,21 +46,13 @@ class CapGuard {
 
     /// After the judgement of what was proven with those bounds: the cap that the permit orders, or
     /// a stop where the board does not keep its promise.
-    /// @param wanted  the fastest cap that is proven a little later; null: none is known
-    void judge(const StopCycle& cycle, const std::uint8_t* wanted, bool is_armed,
-               CycleResult& result, const CapWish* wish = nullptr) noexcept;
+    /// @param wish  what is proven a little later; null: nothing is known
+    void judge(const StopCycle& cycle, const CapWish* wish, bool is_armed,
+               CycleResult& result) noexcept;
 
     /// What the last permit ordered, where a dump that begins later says so.
-    void set_order(const CapOrder& order) noexcept {
-        control_.set_order(order);
-        axis_control_.set_order(order);
-    }
-    [[nodiscard]] const CapOrder& order() const noexcept {
-        return is_per_axis() ? axis_control_.order() : control_.order();
-    }
-    [[nodiscard]] bool is_per_axis() const noexcept {
-        return machine_->guard.cap == CapPromise::per_axis;
-    }
+    void set_order(const CapOrder& order) noexcept { control_.set_order(order); }
+    [[nodiscard]] const CapOrder& order() const noexcept { return control_.order(); }
 
   private:
     struct Seen {
@@ -73,9 +62,8 @@ class CapGuard {
     [[nodiscard]] AxisCaps bound_caps(const CapOrder& order) const noexcept;
     [[nodiscard]] bool is_above() const noexcept;
     [[nodiscard]] bool asks_raise() const noexcept;
-    void order_next_axes(const StopCycle& cycle, const CapWish* wish) noexcept;
     void note_fall(const CapOrder& before) noexcept;
-    void order_next(const StopCycle& cycle, const std::uint8_t* wanted) noexcept;
+    void order_next(const StopCycle& cycle, const CapWish* wish) noexcept;
     [[nodiscard]] bool is_too_fast(std::uint32_t axis, const Seen& before) const noexcept;
     void watch_speeds() noexcept;
     void watch_answer() noexcept;
@@ -84,7 +72,6 @@ class CapGuard {
 
     const Machine* machine_;
     CapControl control_;
-    AxisCapControl axis_control_;
     CapFacts facts_;
     std::int64_t latched_us_ = 0, fell_us_ = 0;  // newest sample, and last order to slow down
     std::array<Seen, kSeen> seen_{};

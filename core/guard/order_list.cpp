@@ -12,6 +12,7 @@ namespace {
 constexpr std::uint32_t kMaskBits = 8;
 constexpr std::array<std::uint8_t, 4> kIdleCaps{32, 8, 3, kCapCrawl};
 constexpr std::array<double, 3> kShares{1.5, 1.05, 0.5};  // of what the fastest bound axis has
+constexpr std::array<double, 10> kSharesOfAll{4, 2, 1.5, 1.25, 1.05, 0.85, 0.65, 0.45, 0.25, 0.12};
 
 struct BitUse {
     std::uint8_t bit = 0;  // of the mask
@@ -45,21 +46,14 @@ class Lister {
         }
     }
 
-    [[nodiscard]] OrderList list() noexcept {
-        std::uint32_t idle = 0;
-        std::uint8_t mask = 0;
-        for (; idle < count_ && bits_[idle].use < kIdleUse; ++idle) {
-            mask = static_cast<std::uint8_t>(mask | bits_[idle].bit);
-        }
-        for (const std::uint8_t cap : kIdleCaps) {
-            add({.cap = cap, .mask = mask});
-        }
+    [[nodiscard]] OrderList list(bool is_per_axis) noexcept {
         add(order_);
-        for (std::uint32_t i = idle; i < count_; ++i) {
-            mask = static_cast<std::uint8_t>(mask | bits_[i].bit);
-            for (const double share : kShares) {
-                const double cap = std::min<double>(std::ceil(share * bits_[i].use), kCapRapid);
-                add({.cap = static_cast<std::uint8_t>(cap), .mask = mask});
+        if (is_per_axis) {
+            add_of_axes();
+        } else {
+            const double fastest = std::max(bits_[count_ - 1].use, double{kCapCrawl});
+            for (const double share : kSharesOfAll) {
+                add({.cap = cap_of(share * fastest), .mask = kMaskOfAll});
             }
         }
         add({.cap = kCapCrawl, .mask = kMaskOfAll});
@@ -69,6 +63,27 @@ class Lister {
     }
 
   private:
+    void add_of_axes() noexcept {
+        std::uint32_t idle = 0;
+        std::uint8_t mask = 0;
+        for (; idle < count_ && bits_[idle].use < kIdleUse; ++idle) {
+            mask = static_cast<std::uint8_t>(mask | bits_[idle].bit);
+        }
+        for (const std::uint8_t cap : kIdleCaps) {
+            add({.cap = cap, .mask = mask});
+        }
+        for (std::uint32_t i = idle; i < count_; ++i) {
+            mask = static_cast<std::uint8_t>(mask | bits_[i].bit);
+            for (const double share : kShares) {
+                add({.cap = cap_of(share * bits_[i].use), .mask = mask});
+            }
+        }
+    }
+
+    static std::uint8_t cap_of(double use) noexcept {
+        return static_cast<std::uint8_t>(std::min<double>(std::ceil(use), kCapRapid));
+    }
+
     [[nodiscard]] std::span<const BitUse> slowest(std::uint32_t count) const noexcept {
         return {bits_.data(), count};
     }
@@ -114,8 +129,9 @@ class Lister {
 
 }  // namespace
 
-OrderList list_orders(std::span<const double> uses, const CapOrder& order) noexcept {
-    return Lister(uses, order).list();
+OrderList list_orders(std::span<const double> uses, const CapOrder& order,
+                      bool is_per_axis) noexcept {
+    return Lister(uses, order).list(is_per_axis);
 }
 
 }  // namespace axg

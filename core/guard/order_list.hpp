@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which caps of single axes a search tries, the one first that costs least now: axes that hardly
-// move are bound first, for that costs nothing while they do not start. Pure. Source:
-// docs/reference/board.md, "Which axes".
+// Which orders of a cap a search tries, the one first that costs least now. Of a board that keeps
+// single axes within a cap, those that hardly move are bound first, for that costs nothing while
+// they do not start. Pure. Source: docs/reference/board.md, "Which order".
 #pragma once
 
 #include <array>
@@ -31,6 +31,8 @@ struct OrderList {
 
 /// @param uses  [axes] how fast each is now, 1/250 of its largest speed
 /// @param order  what was ordered last; it is in the list unless it binds nothing
-[[nodiscard]] OrderList list_orders(std::span<const double> uses, const CapOrder& order) noexcept;
+/// @param is_per_axis  an order may bind some axes alone, else it binds all
+[[nodiscard]] OrderList list_orders(std::span<const double> uses, const CapOrder& order,
+                                    bool is_per_axis) noexcept;
 
 }  // namespace axg

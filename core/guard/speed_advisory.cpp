@@ -73,16 +73,14 @@ Going go_on(double speed, double acceleration, double jerk, double fastest, doub
 
 /// How far forwards an axis gets that goes on for `lead_s` and is then stopped as the certificate
 /// allows for. A later sample will know its speed and acceleration no worse than this one does.
-/// @param is_enforced  once it is obeyed the axis gets no faster than `fastest`, whatever comes
-double capped_distance(AxisLimits limits, const AxisRange& now, double fastest, double lead_s,
-                       double free_s, bool is_enforced) noexcept {
+double capped_distance(const AxisLimits& limits, const AxisRange& now, double fastest,
+                       double lead_s, double free_s) noexcept {
     const double speed = 0.5 * (now.speed_low + now.speed_high);
     const double acceleration = 0.5 * (now.acceleration_low + now.acceleration_high);
     const Going end = go_on(speed, acceleration, limits.jerk_max, fastest, lead_s);
     const double slack =
         0.5 * (now.speed_high - now.speed_low) + kPeriodShare * std::fabs(end.speed - speed);
     const double unknown = 0.5 * (now.acceleration_high - now.acceleration_low);
-    limits.speed_max = is_enforced ? std::min(limits.speed_max, fastest) : limits.speed_max;
     return end.way + forward_reach(limits, end.speed - slack, end.speed + slack, free_s,
                                    end.acceleration + unknown);
 }
@@ -95,11 +93,8 @@ AxisRanges ranges_of(const Machine& machine, const StopCertificate& certificate)
     return ranges;
 }
 
-JointBox capped_box(const Machine& machine, const AxisRanges& ranges, double share,
-                    bool is_enforced) noexcept {
-    const PermitSamples samples = machine.can.permit_samples;
-    const double free_s =
-        free_seconds(machine, is_enforced ? samples_work(samples) : samples.least);
+JointBox capped_box(const Machine& machine, const AxisRanges& ranges, double share) noexcept {
+    const double free_s = free_seconds(machine, machine.can.permit_samples.least);
     const double lead_s = cap_lead_seconds(machine);
     JointBox box;
     for (std::uint32_t i = 0; i < machine.axes.size(); ++i) {
@@ -109,9 +104,8 @@ JointBox capped_box(const Machine& machine, const AxisRanges& ranges, double sha
         // The axis can not follow a cap that falls faster than this.
         limits.stopping_min = std::min(limits.stopping_min, limits.acceleration_max);
         const double speed = share * axis.speed_max;
-        double low =
-            now.low - capped_distance(limits, mirrored(now), speed, lead_s, free_s, is_enforced);
-        double high = now.high + capped_distance(limits, now, speed, lead_s, free_s, is_enforced);
+        double low = now.low - capped_distance(limits, mirrored(now), speed, lead_s, free_s);
+        double high = now.high + capped_distance(limits, now, speed, lead_s, free_s);
         if (machine.guard.travel_enforced && !axis.unlimited) {
             low = std::max(low, std::min(axis.min, now.low));
             high = std::min(high, std::max(axis.max, now.high));
@@ -131,7 +125,7 @@ double certain(double low, double high) noexcept {
     return low > 0 ? low : high < 0 ? high : 0;
 }
 
-constexpr double kOrderLead = 1.5;
+constexpr double kOrderLead = 2;
 
 struct AxisFuture {
     double fastest = 0;  // by the order
@@ -202,7 +196,8 @@ OrderList orders_about(const Machine& machine, const AxisRanges& ranges,
         const double speed = 0.5 * std::fabs(ranges[i].speed_low + ranges[i].speed_high);
         uses[i] = kSpeedCapRapid * speed / machine.axes[i].speed_max;
     }
-    return list_orders({uses.data(), machine.axes.size()}, order);
+    return list_orders({uses.data(), machine.axes.size()}, order,
+                       machine.guard.cap == CapPromise::per_axis);
 }
 
 std::uint32_t fastest_after(std::uint32_t last) noexcept {
@@ -229,17 +224,17 @@ std::uint32_t feeds_about(std::uint32_t last, Feeds& out) noexcept {
 
 JointBox capped_reach(const Machine& machine, const StopCertificate& certificate,
                       double share) noexcept {
-    return capped_box(machine, ranges_of(machine, certificate), share, false);
+    return capped_box(machine, ranges_of(machine, certificate), share);
 }
 
-std::optional<SpeedAdvisory> SpeedAdvisory::create(const Machine& machine, bool is_enforced) {
+std::optional<SpeedAdvisory> SpeedAdvisory::create(const Machine& machine) {
     const std::uint32_t pairs = stop_tasks(machine);
-    const bool is_per_axis = machine.guard.cap == CapPromise::per_axis;
-    const std::uint32_t tasks = pairs * (is_per_axis ? kOrdersTried : kFeeds);
+    const bool is_ordered = machine.guard.cap != CapPromise::none;
+    const std::uint32_t tasks = pairs * (is_ordered ? kOrdersTried : kFeeds);
     const std::uint32_t queries = queries_of(cycle_plan(machine, pairs));
     auto prover = JointBoxProver::create(
         machine, tasks,
-        {.rounds = is_per_axis ? kOrderRounds : kAdvisoryRounds, .queries = queries});
+        {.rounds = is_ordered ? kOrderRounds : kAdvisoryRounds, .queries = queries});
     Arena arena(Arena::size_bytes<JointBoxTask>(tasks) + Arena::size_bytes<JointBoxResult>(tasks) +
                 Arena::size_bytes<std::uint32_t>(pairs));
     if (!prover || !arena.ok()) {
@@ -250,7 +245,6 @@ std::optional<SpeedAdvisory> SpeedAdvisory::create(const Machine& machine, bool 
     advisory.results_ = advisory.arena_.take<JointBoxResult>(tasks);
     advisory.open_ = advisory.arena_.take<std::uint32_t>(pairs);
     advisory.arena_.seal();
-    advisory.is_enforced_ = is_enforced;
     return advisory;
 }
 
@@ -280,7 +274,7 @@ std::uint8_t SpeedAdvisory::search(const Engine& engine, const StopCertificate& 
     const AxisRanges ranges = ranges_of(*machine_, certificate);
     Feeds feeds{};
     const std::uint32_t feed_count = feeds_about(last, feeds);
-    const JointBox widest = capped_box(*machine_, ranges, share_of(feeds[0]), is_enforced_);
+    const JointBox widest = capped_box(*machine_, ranges, share_of(feeds[0]));
     const std::uint32_t open = prove_widest(engine, widest, pairs, queries);
     if (open == 0) {
         return static_cast<std::uint8_t>(feeds[0]);
@@ -290,7 +284,7 @@ std::uint8_t SpeedAdvisory::search(const Engine& engine, const StopCertificate& 
     const std::uint32_t first = feed_count - std::min(feed_count, queries / open);
     std::uint32_t tasks = 0;
     for (std::uint32_t feed = first; feed < feed_count; ++feed) {
-        const JointBox box = capped_box(*machine_, ranges, share_of(feeds[feed]), is_enforced_);
+        const JointBox box = capped_box(*machine_, ranges, share_of(feeds[feed]));
         for (std::uint32_t i = 0; i < open; ++i) {
             put(tasks++, pairs[open_[i]], box);
         }
@@ -335,8 +329,8 @@ std::uint32_t SpeedAdvisory::prove_widest(const Engine& engine, const JointBox& 
     return open;
 }
 
-void SpeedAdvisory::update_axes(const Engine& engine, const StopCertificate& certificate,
-                                std::uint32_t queries, const CapOrder& order) noexcept {
+void SpeedAdvisory::update_order(const Engine& engine, const StopCertificate& certificate,
+                                 std::uint32_t queries, const CapOrder& order) noexcept {
     queries_count_ = 0;
     const StopCycle cycle = certificate.cycle();
     is_known_ = cycle.status == SnapshotStatus::ok && cycle.is_settled && !cycle.is_jog;

@@ -16,7 +16,7 @@
 #include "core/certificate/stop_certificate.hpp"
 #include "core/collision/engine.hpp"
 #include "core/guard/advisories.hpp"
-#include "core/guard/axis_cap_control.hpp"
+#include "core/guard/cap_control.hpp"
 #include "core/machine/machine.hpp"
 
 namespace axg {
@@ -35,9 +35,7 @@ namespace axg {
 class SpeedAdvisory {
   public:
     /// `machine` must outlive it. Empty: memory ran out.
-    /// @param is_enforced  the board keeps all axes within the cap, and the certificate knows
-    [[nodiscard]] static std::optional<SpeedAdvisory> create(const Machine& machine,
-                                                             bool is_enforced = false);
+    [[nodiscard]] static std::optional<SpeedAdvisory> create(const Machine& machine);
 
     /// The cap at the certificate's last `prove`, of the pairs that were queried. The search goes
     /// on from call to call: the cap rises to little more than twice its value in one, and falls at
@@ -48,9 +46,10 @@ class SpeedAdvisory {
     void update(const Engine& engine, const StopCertificate& certificate,
                 std::uint32_t queries) noexcept;
 
-    /// The same of a board that keeps single axes within a cap, where `order` was ordered last.
-    void update_axes(const Engine& engine, const StopCertificate& certificate,
-                     std::uint32_t queries, const CapOrder& order) noexcept;
+    /// The same of a board that promised to keep its axes within a cap, where `order` was ordered
+    /// last. Precondition: the machine file has guard.cap.
+    void update_order(const Engine& engine, const StopCertificate& certificate,
+                      std::uint32_t queries, const CapOrder& order) noexcept;
     [[nodiscard]] const CapWish& wish() const noexcept { return wish_; }
 
     /// 1/250 of rapid; 0: no feed is proven, or nothing is known.
@@ -65,7 +64,7 @@ class SpeedAdvisory {
 
     static constexpr std::uint32_t kAdvisoryRounds =
         4;                                            // three halvings: eight boxes a pair and feed
-    static constexpr std::uint32_t kOrderRounds = 6;  // the same of single axes
+    static constexpr std::uint32_t kOrderRounds = 6;  // the same of orders
 
   private:
     SpeedAdvisory(const Machine& machine, JointBoxProver prover, Arena arena) noexcept
@@ -92,7 +91,7 @@ class SpeedAdvisory {
     std::uint32_t queries_count_ = 0;
     std::uint8_t cap_ = 0;
     CapWish wish_{};
-    bool is_enforced_ = false, is_known_ = false;
+    bool is_known_ = false;
 };
 
 }  // namespace axg

@@ -90,9 +90,8 @@ CycleResult GuardChain::decide(bool ready, bool is_armed) noexcept {
     }
     if (stop_certificate_ != nullptr && cap_guard_.is_on()) {
         const bool is_known = speed_advisory_ != nullptr && speed_advisory_->is_known();
-        cap_guard_.judge(stop_certificate_->cycle(),
-                         is_known ? &result.advisories.speed_cap : nullptr, is_armed, result,
-                         is_known ? &speed_advisory_->wish() : nullptr);
+        cap_guard_.judge(stop_certificate_->cycle(), is_known ? &speed_advisory_->wish() : nullptr,
+                         is_armed, result);
     }
     if (margin_advisory_ != nullptr && margin_advisory_->worst() != kNoIndex) {
         const std::uint32_t pair = margin_advisory_->worst();
@@ -114,8 +113,8 @@ void GuardChain::update_advisories() noexcept {
     std::uint32_t queries =
         queries_of(stop_certificate_->plan()) - stop_certificate_->work().queries;
     if (speed_advisory_ != nullptr) {
-        if (cap_guard_.is_on() && cap_guard_.is_per_axis()) {
-            speed_advisory_->update_axes(engine_, *stop_certificate_, queries, cap_guard_.order());
+        if (cap_guard_.is_on()) {
+            speed_advisory_->update_order(engine_, *stop_certificate_, queries, cap_guard_.order());
         } else {
             speed_advisory_->update(engine_, *stop_certificate_, queries);
         }

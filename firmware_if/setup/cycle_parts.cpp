@@ -7,21 +7,21 @@ namespace axg {
 
 namespace {
 
-bool is_enforced(const LoadedMachine& loaded) noexcept {
-    return loaded.machine.guard.cap != CapPromise::none;
+bool has_advisory(const LoadedMachine& loaded, bool is_stoppable, bool wants_cap) noexcept {
+    return is_stoppable && (wants_cap || loaded.machine.guard.cap != CapPromise::none);
 }
 
 }  // namespace
 
 CycleParts::CycleParts(const LoadedMachine& loaded, bool is_stoppable, bool wants_cap)
     : stop_certificate_(is_stoppable ? make_stop_certificate(loaded) : std::nullopt),
-      speed_advisory_(is_stoppable && (wants_cap || is_enforced(loaded))
-                          ? SpeedAdvisory::create(loaded.machine, is_enforced(loaded))
+      speed_advisory_(has_advisory(loaded, is_stoppable, wants_cap)
+                          ? SpeedAdvisory::create(loaded.machine)
                           : std::nullopt),
       margin_advisory_(has_clearance_levels(loaded.machine) ? MarginAdvisory::create(loaded.machine)
                                                             : std::nullopt),
       has_memory_((stop_certificate_ || !is_stoppable) &&
-                  (speed_advisory_ || !is_stoppable || !(wants_cap || is_enforced(loaded))) &&
+                  (speed_advisory_ || !has_advisory(loaded, is_stoppable, wants_cap)) &&
                   (margin_advisory_ || !has_clearance_levels(loaded.machine))) {}
 
 }  // namespace axg

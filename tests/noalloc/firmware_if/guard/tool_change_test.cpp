@@ -116,7 +116,7 @@ TEST_F(ToolChange, AllocatesNothingWithAnEnforcedCap) {
     for (const CapPromise promise : {CapPromise::all_axes, CapPromise::per_axis}) {
         loaded.machine.guard.cap = promise;
         std::optional<StopCertificate> capped = make_stop_certificate(loaded);
-        std::optional<SpeedAdvisory> advisory = SpeedAdvisory::create(loaded.machine, true);
+        std::optional<SpeedAdvisory> advisory = SpeedAdvisory::create(loaded.machine);
         ASSERT_TRUE(capped && advisory);
         const Sent sent = run(frames, &*capped, &*advisory);
         EXPECT_EQ(sent.capped, 160);

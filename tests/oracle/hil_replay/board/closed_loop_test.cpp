@@ -173,7 +173,7 @@ DriveResult drive_watched(ContactScene& scene, Guard guard, const Drawn& drawn, 
         guard == Guard::contact_only ? std::nullopt : make_stop_certificate(of_guard);
     const bool has_cap = certificate && scene.machine().guard.cap != CapPromise::none;
     std::optional<SpeedAdvisory> advisory =
-        has_cap ? SpeedAdvisory::create(of_guard.machine, true) : std::nullopt;
+        has_cap ? SpeedAdvisory::create(of_guard.machine) : std::nullopt;
     GuardChain chain(scene.machine(), scene.engine->engine(), *scene.containment_test,
                      certificate ? &*certificate : nullptr, advisory ? &*advisory : nullptr);
     DriveObservers observers;

@@ -32,12 +32,14 @@ CapFacts facts_at(std::uint8_t acked) {
     return facts;
 }
 
+constexpr CapWish kSlower{.best = {.cap = 187, .mask = 0xFF}, .is_kept_fine = false};
+
 struct Bench {
     explicit Bench(CapPromise promise = CapPromise::all_axes)
         : machine(capped_machine(promise)), guard(machine) {}
 
     /// One sample further, the second axis by so much.
-    CycleResult step(const CapFacts& facts, double step_mm, bool is_longer_proven = true,
+    CycleResult step(const CapFacts& facts, double step_mm, const CapWish& wish = {},
                      bool is_armed = true) {
         ++snapshot.sample;
         snapshot.latched_us += 1000;
@@ -48,12 +50,11 @@ struct Bench {
         guard.note(snapshot, facts, false, errors);
         CycleResult result;
         result.has_permit = true;
-        const std::uint8_t wanted = kCapRapid;
         guard.judge({.status = SnapshotStatus::ok,
                      .is_settled = true,
                      .samples = 10,
-                     .is_longer_proven = is_longer_proven},
-                    &wanted, is_armed, result);
+                     .is_longer_proven = true},
+                    &wish, is_armed, result);
         return result;
     }
     /// So many; the first result that stops.
@@ -72,29 +73,29 @@ struct Bench {
     AxisSnapshot snapshot;
 };
 
-TEST(CapGuard, OrdersLessWhereTheLongerPermitIsNotProven) {
+TEST(CapGuard, OrdersLessWhereThatIsWishedFor) {
     Bench bench;
     CycleResult result = bench.step(facts_at(kCapRapid), 0);
     EXPECT_TRUE(result.has_cap);
     EXPECT_EQ(result.cap_order.cap, kCapRapid);
-    result = bench.step(facts_at(kCapRapid), 0, false);
+    result = bench.step(facts_at(kCapRapid), 0, kSlower);
     EXPECT_TRUE(result.has_permit);
     EXPECT_EQ(result.cap_order.cap, 187);
     EXPECT_EQ(result.cap_order.mask, 0xFF);
-    EXPECT_EQ(bench.step(facts_at(kCapRapid), 0, false, false).cap_order.cap, kCapRapid)
+    EXPECT_EQ(bench.step(facts_at(kCapRapid), 0, kSlower, false).cap_order.cap, kCapRapid)
         << "not armed, nothing is ordered";
 }
 
 TEST(CapGuard, AResultOfACapThatIsNoLongerOrderedHasNoPermit) {
     Bench bench;
-    bench.step(facts_at(kCapRapid), 0, false);
-    EXPECT_FALSE(bench.step(facts_at(kCapRapid), 0, true, false).has_permit);
-    EXPECT_TRUE(bench.step(facts_at(kCapRapid), 0, true, false).has_permit);
+    bench.step(facts_at(kCapRapid), 0, kSlower);
+    EXPECT_FALSE(bench.step(facts_at(kCapRapid), 0, {}, false).has_permit);
+    EXPECT_TRUE(bench.step(facts_at(kCapRapid), 0, {}, false).has_permit);
 }
 
 TEST(CapGuard, WithoutAPromiseItIsSilent) {
     Bench bench(CapPromise::none);
-    const CycleResult result = bench.step(facts_at(1), 400, false);
+    const CycleResult result = bench.step(facts_at(1), 400, kSlower);
     EXPECT_FALSE(result.has_cap);
     EXPECT_TRUE(result.has_permit);
 }
@@ -118,7 +119,7 @@ TEST(CapGuard, AnAxisThatIsFasterThanItsCapIsSeen) {
 
 TEST(CapGuard, AnOrderThatIsNotAcknowledgedInTimeStops) {
     Bench bench;
-    bench.step(facts_at(kCapRapid), 0, false);
+    bench.step(facts_at(kCapRapid), 0, kSlower);
     const int most = static_cast<int>(cap_answer_seconds(bench.machine) * 1e3);
     for (const bool in_time : {true, false}) {
         const auto stop = bench.steps(in_time ? most - 1 : 3, facts_at(kCapRapid), 0);
@@ -134,7 +135,7 @@ TEST(CapGuard, APermitThatWasNeverSentStops) {
     Bench bench;
     CapFacts facts;
     facts.status = AckStatus::unknown;
-    EXPECT_FALSE(bench.step(facts, 0, true, false).is_stop);
+    EXPECT_FALSE(bench.step(facts, 0, {}, false).is_stop);
     const CycleResult stop = bench.step(facts, 0);
     EXPECT_TRUE(stop.is_stop);
     EXPECT_EQ(stop.cap_fact.kind, CapBreak::unknown_permit);

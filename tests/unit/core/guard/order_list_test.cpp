@@ -22,7 +22,7 @@ bool has(const OrderList& list, std::uint8_t cap, std::uint8_t mask) {
 }
 
 TEST(OrderList, IdleAxesAreBoundFirstAndTheFastestLast) {
-    const OrderList list = list_orders(std::array{0.0, 3.1, 36.5, 4.9}, {});
+    const OrderList list = list_orders(std::array{0.0, 3.1, 36.5, 4.9}, {}, true);
     ASSERT_GT(list.count, 0U);
     EXPECT_EQ(list.of[0].order.cap, 32);
     EXPECT_EQ(list.of[0].order.mask, 0b0001) << "X stands";
@@ -47,13 +47,13 @@ TEST(OrderList, IdleAxesAreBoundFirstAndTheFastestLast) {
 }
 
 TEST(OrderList, WhatWasOrderedIsTriedAgain) {
-    EXPECT_TRUE(has(list_orders(std::array{0.0, 10.0}, {.cap = 77, .mask = 2}), 77, 2));
-    const OrderList free = list_orders(std::array{0.0, 10.0}, {});
+    EXPECT_TRUE(has(list_orders(std::array{0.0, 10.0}, {.cap = 77, .mask = 2}, true), 77, 2));
+    const OrderList free = list_orders(std::array{0.0, 10.0}, {}, true);
     for (const OrderTried& one : tried(free)) {
         EXPECT_LT(one.order.cap, kCapRapid);
         EXPECT_NE(one.order.mask, 0);
     }
-    const OrderList after_hold = list_orders(std::array{0.0, 0.0}, {.cap = 0, .mask = 3});
+    const OrderList after_hold = list_orders(std::array{0.0, 0.0}, {.cap = 0, .mask = 3}, true);
     for (const OrderTried& one : tried(after_hold)) {
         EXPECT_GT(one.order.cap, kCapHold) << "a hold is no wish";
     }
@@ -62,14 +62,14 @@ TEST(OrderList, WhatWasOrderedIsTriedAgain) {
 // An axis that a cap slows down speeds up where it is let, and all others with it.
 TEST(OrderList, WhoeverIsSlowedDownMayGrow) {
     const CapOrder order{.cap = 4, .mask = 0b10};
-    const OrderList slowed = list_orders(std::array{20.0, 3.9}, order);
+    const OrderList slowed = list_orders(std::array{20.0, 3.9}, order, true);
     EXPECT_TRUE(slowed.is_slowed);
     for (const OrderTried& one : tried(slowed)) {
         const bool is_raise = one.order.cap > 4 || (one.order.mask & 0b10) == 0;
         EXPECT_EQ(one.growth > 1, is_raise && one.room > 1)
             << int{one.order.cap} << " of " << int{one.order.mask};
     }
-    EXPECT_FALSE(list_orders(std::array{20.0, 0.1}, order).is_slowed) << "it does not move";
+    EXPECT_FALSE(list_orders(std::array{20.0, 0.1}, order, true).is_slowed) << "it does not move";
 }
 
 TEST(OrderList, AxesBeyondTheMaskShareItsLastBit) {
@@ -77,7 +77,22 @@ TEST(OrderList, AxesBeyondTheMaskShareItsLastBit) {
     uses.fill(50);
     uses[7] = 0;
     uses[8] = 2;
-    EXPECT_TRUE(has(list_orders(uses, {}), 3, 0x80)) << "the faster one of the two counts";
+    EXPECT_TRUE(has(list_orders(uses, {}, true), 3, 0x80)) << "the faster one of the two counts";
+}
+
+TEST(OrderList, WhoeverCanOnlyScaleEverythingBindsAllAxesTheHighestCapFirst) {
+    const CapOrder order{.cap = 7, .mask = kMaskOfAll};
+    for (const double use : {0.0, 0.9, 20.0, 249.0}) {
+        const OrderList list = list_orders(std::array{0.0, use}, order, false);
+        std::uint8_t cap = kCapRapid;
+        for (const OrderTried& one : tried(list)) {
+            EXPECT_EQ(one.order.mask, kMaskOfAll);
+            EXPECT_LT(one.order.cap, cap);
+            cap = one.order.cap;
+        }
+        EXPECT_EQ(cap, kCapCrawl);
+        EXPECT_TRUE(has(list, 7, kMaskOfAll));
+    }
 }
 
 }  // namespace
