@@ -16,26 +16,43 @@ double speed_for(const Axis& axis, double distance) noexcept {
     return a * (std::sqrt(ramp * ramp + 2 * distance / a) - ramp);
 }
 
+/// The largest speed of an axis, or the one that it keeps, each way.
+struct Kept {
+    double down = 0, up = 0;
+
+    [[nodiscard]] bool holds(double speed) const noexcept {
+        constexpr double kRounding = 1 + 1e-12;  // a motion may run along its limits
+        return speed <= up * kRounding && -speed <= down * kRounding;
+    }
+};
+
+/// An axis that is faster slows down, and gets no faster on the way; but the other way round it
+/// keeps what it should.
+Kept kept_by(const Axis& axis, const AxisMotion& now, double share_kept) noexcept {
+    const double end =
+        now.speed + 0.5 * now.acceleration * std::abs(now.acceleration) / axis.jerk_max;
+    const double most = axis.speed_max, least = share_kept * most;
+    return {.down = std::min(most, std::max({least, -now.speed, -end})),
+            .up = std::min(most, std::max({least, now.speed, end}))};
+}
+
 /// Whether the axis may do this for a tick: at its end the limits hold, even while the acceleration
 /// returns to zero, and so does the speed where the acceleration passes zero on the way.
-/// @param fastest  the largest speed, or the one that it keeps
-bool is_legal(const Axis& axis, double fastest, const AxisMotion& now, double jerk,
+bool is_legal(const Axis& axis, const Kept& kept, const AxisMotion& now, double jerk,
               double tick_s) noexcept {
-    constexpr double kRounding = 1 + 1e-12;  // a motion may run along its limits
-    const double speed_max = fastest * kRounding;
+    constexpr double kRounding = 1 + 1e-12;
     AxisMotion trial = now;
     trial.jerk = jerk;
     const AxisMotion then = moved_on(trial, tick_s);
     const double swing = 0.5 * then.acceleration * std::abs(then.acceleration) / axis.jerk_max;
     if (std::abs(then.acceleration) > axis.acceleration_max * kRounding ||
-        std::abs(then.speed + swing) > speed_max || std::abs(then.speed) > speed_max) {
+        !kept.holds(then.speed + swing) || !kept.holds(then.speed)) {
         return false;
     }
     if (now.acceleration * then.acceleration >= 0) {
         return true;
     }
-    const double peak = now.speed - 0.5 * now.acceleration * now.acceleration / jerk;
-    return std::abs(peak) <= speed_max;
+    return kept.holds(now.speed - 0.5 * now.acceleration * now.acceleration / jerk);
 }
 
 /// What is left of its motion is what a few ticks of jerk could mend.
@@ -56,11 +73,7 @@ bool has_arrived(const Axis& axis, const AxisMotion& now, double target, double 
 double approach_jerk(const Axis& axis, const AxisMotion& now, double target, double speed_share,
                      double tick_s, double share_kept) noexcept {
     const double j = axis.jerk_max;
-    // An axis that is faster slows down, and gets no faster on the way.
-    const double swing = 0.5 * now.acceleration * std::abs(now.acceleration) / j;
-    const double kept = std::min(
-        axis.speed_max,
-        std::max({share_kept * axis.speed_max, std::abs(now.speed), std::abs(now.speed + swing)}));
+    const Kept kept = kept_by(axis, now, share_kept);
     // Where it is, and how fast, once it no longer accelerates towards the target.
     AxisMotion level = now;
     if (now.acceleration * (target - now.position) > 0) {

@@ -113,6 +113,8 @@ class MotionBoard {
     }
     [[nodiscard]] const BoardStopRecord& stop() const noexcept { return stop_; }
     [[nodiscard]] const PermitWatch& permits() const noexcept { return watch_; }
+    /// PermitWatch::library
+    [[nodiscard]] axg_board& library() noexcept { return watch_.library(); }
     [[nodiscard]] std::span<const AxisMotion> axes() const noexcept {
         return {axes_.data(), machine_.axes.size()};
     }

@@ -74,6 +74,8 @@ class PermitWatch {
     [[nodiscard]] bool is_slow() const noexcept { return is_slow_; }
     [[nodiscard]] std::uint64_t permits() const noexcept { return permits_; }
     [[nodiscard]] std::uint64_t refused() const noexcept { return refused_; }
+    /// State of the board's library, for ablations of its rules.
+    [[nodiscard]] axg_board& library() noexcept { return board_; }
 
   private:
     static constexpr int kNothingOwed = -1;

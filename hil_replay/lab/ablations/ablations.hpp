@@ -19,4 +19,14 @@ void believe_any_turn(Machine& of_guard, std::uint32_t axis, double speed) noexc
 /// A board without the dead man: it moves on when its permit has run out.
 void forget_dead_man(BoardOptions& board) noexcept;
 
+/// Rule (iii) of docs/reference/board.md left out: the board forgets what it kept since its
+/// samples, so that every usable permit counts. After each latch.
+void forget_what_was_kept(axg_board& board) noexcept;
+
+/// Rule (iv) left out: a raise shortens nothing. Before a latch: what the library takes for the end
+/// of the permit in force is that of the last one, so that it waits for nothing.
+/// @return  the end in force, for `keep_end` after the latch; 0: nothing was changed
+[[nodiscard]] std::uint64_t forget_older_end(axg_board& board, std::int64_t period_us) noexcept;
+void keep_end(axg_board& board, std::uint64_t end_us) noexcept;
+
 }  // namespace axg::lab

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "hil_replay/board/approach_driver.hpp"
+#include "hil_replay/board/axis_cap_keeper.hpp"
 #include "hil_replay/lab/ablations/ablations.hpp"
 #include "tests/support/between.hpp"
 #include "tests/support/count.hpp"
@@ -97,6 +98,36 @@ TEST(ApproachDriver, KeepsTheLimitsAndArrives) {
         EXPECT_GT(fastest, 0.99) << "too tame to tell anything";
         EXPECT_GT(hardest, 0.99) << "too tame to tell anything";
     }
+}
+
+// A board keeps a lower cap from the moment that its axes are below it, also the other way round.
+TEST(ApproachDriver, SlowedDownItStaysSlowWhicheverWayItGoes) {
+    Random random(printed_seed(20261129));
+    std::uint64_t kept = 0, turned = 0;
+    for (std::uint64_t n = count_from_environment(2000); n > 0; --n) {
+        const Machine machine = random_machine(random);
+        const Axis& axis = machine.axes[0];
+        const double share = between(random, 0.004, 0.2), target = between(random, -20, 20);
+        AxisMotion now;
+        const int free_ticks = static_cast<int>(between(random, 1, 150));
+        const double first = between(random, -100, 100);
+        bool is_kept = false;
+        double before = 0;
+        for (int k = 0; k < free_ticks + 600; ++k) {
+            const bool is_free = k < free_ticks;
+            now.jerk = is_free ? approach_jerk(axis, now, first, 1, 1e-3)
+                               : approach_jerk(axis, now, target, share, 1e-3, share);
+            now = moved_on(now, 1e-3);
+            const double of = share_in_stop(axis, now);
+            ASSERT_TRUE(!is_kept || of <= share * (1 + 1e-9)) << of << " for " << share;
+            is_kept = is_kept || (!is_free && of <= share);
+            turned += !is_free && before * now.speed < 0 ? 1 : 0;
+            before = now.speed;
+        }
+        kept += is_kept ? 1 : 0;
+    }
+    EXPECT_GT(kept, 0U);
+    EXPECT_GT(turned, 0U);
 }
 
 enum class Fault { silence, late, killed, stuck };
