@@ -34,25 +34,6 @@ struct Float8 {
         m = _mm_max_ps(m, _mm_movehl_ps(m, m));
         return _mm_cvtss_f32(_mm_max_ss(m, _mm_movehdup_ps(m)));
     }
-    /// The lanes in double.
-    struct Wide {
-        __m256d low, high;
-    };
-    AXG_HD static Wide load_wide(const float* p) noexcept {
-        return {_mm256_cvtps_pd(_mm_loadu_ps(p)), _mm256_cvtps_pd(_mm_loadu_ps(p + 4))};
-    }
-    /// r[0] x + (r[1] y + (r[2] z + t)) in double, fused, rounded once to float.
-    AXG_HD static Float8 moved(const double* r, double t, const Wide& x, const Wide& y,
-                               const Wide& z) noexcept {
-        const __m256d rx = _mm256_set1_pd(r[0]), ry = _mm256_set1_pd(r[1]),
-                      rz = _mm256_set1_pd(r[2]), start = _mm256_set1_pd(t);
-        const __m256d low = _mm256_fmadd_pd(
-            rx, x.low, _mm256_fmadd_pd(ry, y.low, _mm256_fmadd_pd(rz, z.low, start)));
-        const __m256d high = _mm256_fmadd_pd(
-            rx, x.high, _mm256_fmadd_pd(ry, y.high, _mm256_fmadd_pd(rz, z.high, start)));
-        return {_mm256_insertf128_ps(_mm256_castps128_ps256(_mm256_cvtpd_ps(low)),
-                                     _mm256_cvtpd_ps(high), 1)};
-    }
 };
 struct Mask8 {
     __m256 m;

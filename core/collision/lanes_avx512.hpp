@@ -26,25 +26,6 @@ struct Float16 {
     /// Of all lanes; a zero may come out with either sign.
     AXG_HD float least() const noexcept { return _mm512_reduce_min_ps(v); }
     AXG_HD float most() const noexcept { return _mm512_reduce_max_ps(v); }
-    /// The lanes in double.
-    struct Wide {
-        __m512d low, high;
-    };
-    AXG_HD static Wide load_wide(const float* p) noexcept {
-        return {_mm512_cvtps_pd(_mm256_loadu_ps(p)), _mm512_cvtps_pd(_mm256_loadu_ps(p + 8))};
-    }
-    /// r[0] x + (r[1] y + (r[2] z + t)) in double, fused, rounded once to float.
-    AXG_HD static Float16 moved(const double* r, double t, const Wide& x, const Wide& y,
-                                const Wide& z) noexcept {
-        const __m512d rx = _mm512_set1_pd(r[0]), ry = _mm512_set1_pd(r[1]),
-                      rz = _mm512_set1_pd(r[2]), start = _mm512_set1_pd(t);
-        const __m512d low = _mm512_fmadd_pd(
-            rx, x.low, _mm512_fmadd_pd(ry, y.low, _mm512_fmadd_pd(rz, z.low, start)));
-        const __m512d high = _mm512_fmadd_pd(
-            rx, x.high, _mm512_fmadd_pd(ry, y.high, _mm512_fmadd_pd(rz, z.high, start)));
-        return {_mm512_insertf32x8(_mm512_castps256_ps512(_mm512_cvtpd_ps(low)),
-                                   _mm512_cvtpd_ps(high), 1)};
-    }
 };
 struct Mask16 {
     __mmask16 m;

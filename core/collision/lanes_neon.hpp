@@ -26,24 +26,6 @@ struct Float4 {
     /// Of all lanes; a zero may come out with either sign.
     AXG_HD float least() const noexcept { return vminvq_f32(v); }
     AXG_HD float most() const noexcept { return vmaxvq_f32(v); }
-    /// The lanes in double.
-    struct Wide {
-        float64x2_t low, high;
-    };
-    AXG_HD static Wide load_wide(const float* p) noexcept {
-        const float32x4_t v = vld1q_f32(p);
-        return {vcvt_f64_f32(vget_low_f32(v)), vcvt_high_f64_f32(v)};
-    }
-    /// r[0] x + (r[1] y + (r[2] z + t)) in double, fused, rounded once to float.
-    AXG_HD static Float4 moved(const double* r, double t, const Wide& x, const Wide& y,
-                               const Wide& z) noexcept {
-        const float64x2_t start = vdupq_n_f64(t);
-        float64x2_t low = vfmaq_n_f64(vfmaq_n_f64(start, z.low, r[2]), y.low, r[1]);
-        low = vfmaq_n_f64(low, x.low, r[0]);
-        float64x2_t high = vfmaq_n_f64(vfmaq_n_f64(start, z.high, r[2]), y.high, r[1]);
-        high = vfmaq_n_f64(high, x.high, r[0]);
-        return {vcvt_high_f32_f64(vcvt_f32_f64(low), high)};
-    }
 };
 struct Mask4 {
     uint32x4_t m;

@@ -28,13 +28,6 @@ struct Float1 {
     }
     AXG_HD float least() const noexcept { return v; }
     AXG_HD float most() const noexcept { return v; }
-    using Wide = double;
-    AXG_HD static Wide load_wide(const float* p) noexcept { return static_cast<double>(*p); }
-    /// r[0] x + (r[1] y + (r[2] z + t)) in double, fused, rounded once to float.
-    AXG_HD static Float1 moved(const double* r, double t, Wide x, Wide y, Wide z) noexcept {
-        return {
-            static_cast<float>(lanes::fma(r[0], x, lanes::fma(r[1], y, lanes::fma(r[2], z, t))))};
-    }
 };
 
 AXG_HD Float1 operator+(Float1 a, Float1 b) noexcept {

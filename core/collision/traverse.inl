@@ -27,21 +27,14 @@ inline constexpr unsigned kLeafPairs = kNodeWidth * kNodeWidth;
 #include "core/collision/box_test.inl"
 #include "core/collision/traverse_query.inl"
 
-/// Boxes of the triangles of one leaf along the other body's axes: tight, made from moved vertices.
-struct TightBoxes {
-    float leaf_low[3], leaf_high[3];  // of all its triangles
-    // Corners are moved first, for the box of them all; what follows is made of them by need.
-    bool is_spread;
-    alignas(64) float corner[3][kNodeWidth];
-    alignas(64) float low[3][kNodeWidth];
-    alignas(64) float high[3][kNodeWidth];
-};
+#include "core/collision/move_leaves.inl"
 
-/// One leaf of a in b's frame, less an origin near it: vertices rounded once from double. Made once
-/// for all leaves of b that it meets in a row.
+/// One leaf of a in b's frame, less an origin near it. Made once for all leaves of b that it meets
+/// in a row.
 struct MovedLeaf {
     alignas(64) float v[9][kNodeWidth];  // as soon as boxes.is_spread
     float origin[3];
+    float d;  // of scale_of
     TightBoxes boxes;
     std::uint32_t node = kNoLeaf;  // which node of a this is
 };
@@ -68,106 +61,6 @@ struct Traversal : QueryConstants {
     Pose inverse_pose;                       // as soon as one is filled
 };
 
-/// The box of a leaf, from the boxes of what is moved kW at a time.
-struct LeafBox {
-    V low[3], high[3];
-
-    AXG_HD void add(bool is_first, int k, V least, V most) noexcept {
-        low[k] = is_first ? least : lanes::min(least, low[k]);
-        high[k] = is_first ? most : lanes::max(most, high[k]);
-    }
-    AXG_HD void put(TightBoxes& to) const noexcept {
-        for (int k = 0; k < 3; ++k) {
-            to.leaf_low[k] = low[k].least();
-            to.leaf_high[k] = high[k].most();
-        }
-    }
-};
-
-/// Moves the vertices of a leaf by `p` less the origin; `v` takes them unless it is null.
-AXG_HD void move_vertices(const Pose& p, const float* origin, const TreeLeaf& leaf, unsigned count,
-                          float (*v)[kNodeWidth], TightBoxes& to) noexcept {
-    LeafBox box;
-    for (unsigned at = 0; at < count; at += kW) {
-        V low[3], high[3];
-        for (int i = 0; i < 3; ++i) {
-            const V::Wide x = V::load_wide(&leaf.v[3 * i][at]);
-            const V::Wide y = V::load_wide(&leaf.v[3 * i + 1][at]);
-            const V::Wide z = V::load_wide(&leaf.v[3 * i + 2][at]);
-            for (int k = 0; k < 3; ++k) {
-                const V c = V::moved(p.r[k], p.t[k] - static_cast<double>(origin[k]), x, y, z);
-                if (v != nullptr) {
-                    c.store(&v[3 * i + k][at]);
-                }
-                low[k] = i == 0 ? c : lanes::min(c, low[k]);
-                high[k] = i == 0 ? c : lanes::max(c, high[k]);
-            }
-        }
-        for (int k = 0; k < 3; ++k) {
-            low[k].store(&to.low[k][at]);
-            high[k].store(&to.high[k][at]);
-            box.add(at == 0, k, low[k], high[k]);
-        }
-    }
-    box.put(to);
-    to.is_spread = true;
-}
-
-/// The same for corners: to the bit what they are as vertices of their triangles.
-AXG_HD void move_corners(const Pose& p, const float* origin, const LeafCorners& leaf,
-                         TightBoxes& to) noexcept {
-    LeafBox box;
-    for (unsigned at = 0; at < leaf.count; at += kW) {
-        const V::Wide x = V::load_wide(&leaf.v[0][at]);
-        const V::Wide y = V::load_wide(&leaf.v[1][at]);
-        const V::Wide z = V::load_wide(&leaf.v[2][at]);
-        for (int k = 0; k < 3; ++k) {
-            const V c = V::moved(p.r[k], p.t[k] - static_cast<double>(origin[k]), x, y, z);
-            c.store(&to.corner[k][at]);
-            box.add(at == 0, k, c, c);
-        }
-    }
-    box.put(to);
-    to.is_spread = false;
-}
-
-/// Hands moved corners out to the triangles; `v` takes the vertices unless it is null.
-AXG_HD void spread_corners(const Tree& tree, const TreeNode& node, float (*v)[kNodeWidth],
-                           TightBoxes& to) noexcept {
-    if (to.is_spread) {
-        return;
-    }
-    const LeafCorners& leaf = tree.corners.data()[node.leaf];
-    for (unsigned at = 0; at < node.count; at += kW) {
-        for (int k = 0; k < 3; ++k) {
-            V low = V::pick(to.corner[k], &leaf.at[0][at]), high = low;
-            if (v != nullptr) {
-                low.store(&v[k][at]);
-            }
-            for (int i = 1; i < 3; ++i) {
-                const V c = V::pick(to.corner[k], &leaf.at[i][at]);
-                if (v != nullptr) {
-                    c.store(&v[3 * i + k][at]);
-                }
-                low = lanes::min(c, low);
-                high = lanes::max(c, high);
-            }
-            low.store(&to.low[k][at]);
-            high.store(&to.high[k][at]);
-        }
-    }
-    to.is_spread = true;
-}
-
-AXG_HD void move_one(const Tree& tree, const TreeNode& node, const Pose& p, const float* origin,
-                     float (*v)[kNodeWidth], TightBoxes& to) noexcept {
-    if (!tree.corners.empty() && tree.corners.data()[node.leaf].count != 0) {
-        move_corners(p, origin, tree.corners.data()[node.leaf], to);
-    } else {
-        move_vertices(p, origin, tree.leaves.data()[node.leaf], node.count, v, to);
-    }
-}
-
 AXG_HD void move_leaf(Traversal& w, std::uint32_t node) noexcept {
     MovedLeaf& to = w.moved;
     if (to.node == node) {
@@ -178,7 +71,8 @@ AXG_HD void move_leaf(Traversal& w, std::uint32_t node) noexcept {
     for (int k = 0; k < 3; ++k) {
         to.origin[k] = box.c[k];
     }
-    move_one(w.tree_a, a, w.query.pose, to.origin, to.v, to.boxes);
+    to.d = leaf_d(w.d32, a.box);
+    move_one(w.tree_a, a, LeafMove(w.a_in_b, w.query.pose, a.box, to.origin), to.v, to.boxes);
     to.node = node;
 }
 
@@ -192,7 +86,8 @@ AXG_HD TightBoxes& boxes_of_b(Traversal& w, std::uint32_t node) noexcept {
         if (w.boxes_b_used == 0) {
             w.inverse_pose = inverse(w.query.pose);
         }
-        move_one(w.tree_b, w.tree_b.nodes.data()[node], w.inverse_pose, kNone, nullptr, to);
+        const TreeNode& b = w.tree_b.nodes.data()[node];
+        move_one(w.tree_b, b, LeafMove(w.b_in_a, w.inverse_pose, b.box, kNone), nullptr, to);
         w.boxes_b_node[place] = node;
         w.boxes_b_used |= 1U << place;
     }
@@ -263,7 +158,7 @@ template <bool kMargin>
         return false;
     }
     pad(list);
-    const sat::PairLimits<V> limits{V::of(w.d32), V::of(w.margin), V::of(w.r_square)};
+    const sat::PairLimits<V> limits{V::of(w.moved.d), V::of(w.margin), V::of(w.r_square)};
     for (unsigned at = 0; at < list.count; at += kW) {
         const LanePairs p = lane_pairs(w, b, list, at);
         std::uint32_t left = ~sat::apart<kMargin>(p.a, p.b, limits).bits() & kLaneBits;

@@ -150,7 +150,7 @@ inline constexpr double kApart = 0x1p-1000;
         }
         pad(list);
         const LanePairs picked = lane_pairs(w, b, list, 0);
-        const sat::TrianglePair<V> p = sat::scaled_pair(picked.a, picked.b, V::of(w.d32));
+        const sat::TrianglePair<V> p = sat::scaled_pair(picked.a, picked.b, V::of(w.moved.d));
         const sat::Closest<V> closest = sat::closest_direction(p, sat::axes_of(p));
         alignas(64) float proven[kW];
         sat::certified_distance(p, closest.direction).store(proven);

@@ -8,7 +8,7 @@
 struct QueryConstants {
     Frame a_in_b, b_in_a;
     float tight_slack;  // of tight boxes: covers their roundings, the margin and the pose's error
-    float margin, d32;  // r' and d of the theorem, float
+    float margin, d32;  // r' and d of the theorem, float; of a leaf's vertices: leaf_d
     float r_square;     // the margin's square, for the shared axes
     double margin64, d64;  // the same for the recheck
     bool has_margin;
@@ -58,10 +58,10 @@ AXG_HD void set_constants(QueryConstants& c, const Query& q, float reach_a,
     // Largest |coordinate| that can appear. The floor covers what underflow costs where every
     // coordinate is next to nothing.
     const double coordinate_mm = t + 3.0 * double(reach_a) + 2.0 * double(reach_b) + 0x1p-40;
-    // Of any computed vertex of a in b's frame: arithmetic and the pose's own.
-    const double error_mm = 0x1p-50 * coordinate_mm + q.pose_error_mm;
-    c.d32 = up(0x1p21 * error_mm) + 0x1p-90F;
-    c.d64 = 0x1p50 * error_mm * (1.0 + 0x1p-50);
+    // Of any vertex of a in b's frame: arithmetic and the pose's own. In float what depends on its
+    // leaf comes on top.
+    c.d32 = up(0x1p21 * (0x1p-43 * coordinate_mm + q.pose_error_mm)) + 0x1p-90F;
+    c.d64 = 0x1p50 * (0x1p-50 * coordinate_mm + q.pose_error_mm) * (1.0 + 0x1p-50);
     c.has_margin = margin;
     const double r = lanes::max(q.r_mm, 0x1p-40);
     c.margin = up(r * (1.0 + 0x1p-20));
@@ -79,6 +79,24 @@ AXG_HD double moved_coordinate(const Pose& p, int k, double x, double y, double 
                                double origin) noexcept {
     return lanes::fma(p.r[k][0], x,
                       lanes::fma(p.r[k][1], y, lanes::fma(p.r[k][2], z, p.t[k] - origin)));
+}
+
+/// One coordinate of a leaf's own centre in the other body's frame less an origin, rounded once.
+AXG_HD float moved_centre(const Pose& p, int k, const float* centre, float origin) noexcept {
+    return static_cast<float>(
+        moved_coordinate(p, k, centre[0], centre[1], centre[2], static_cast<double>(origin)));
+}
+
+/// The same of a vertex, in float. x, y, z: less the leaf's centre; shift: moved_centre.
+AXG_HD V moved_about(const Frame& f, int k, float shift, V x, V y, V z) noexcept {
+    using lanes::fma;
+    return fma(V::of(f.r[k][0]), x,
+               fma(V::of(f.r[k][1]), y, fma(V::of(f.r[k][2]), z, V::of(shift))));
+}
+
+/// d of the theorem for vertices of a leaf moved so: of its box, the largest half width.
+AXG_HD float leaf_d(float d32, const Aabb& box) noexcept {
+    return lanes::fma(0.75F, lanes::max(lanes::max(box.h[0], box.h[1]), box.h[2]), d32);
 }
 
 /// One pair in double, for the recheck: un-rounded vertices, less the same origin as in float.

@@ -83,15 +83,54 @@ __device__ __forceinline__ TightBox whole_of(const TightBox& own) {
     return whole;
 }
 
-/// This lane's triangle moved by `p` less the origin; v takes the nine coordinates unless null.
-__device__ __forceinline__ TightBox move_triangle(const Pose& p, const float* origin,
-                                                  const TreeLeaf& leaf, unsigned lane, float* v) {
+/// Where the centres of leaves get in the other body's frame: of a less the origin, of b.
+struct MovedCentres {
+    float a[3], b[3];
+};
+
+/// One of three, without an array in memory.
+__device__ __forceinline__ float one_of(const float* v, unsigned k) {
+    return k == 0 ? v[0] : k == 1 ? v[1] : v[2];
+}
+
+/// moved_centre of a leaf of a, and of one of b where kBoth: a coordinate a lane, because small
+/// devices have few units for double. Called by whole warps.
+template <bool kBoth>
+__device__ __forceinline__ MovedCentres move_centres(const PreparedQuery& q, const float* centre_a,
+                                                     const float* centre_b, const float* origin) {
+    const unsigned lane = lane_of_thread(), k = lane % 3;
+    const bool is_a = !kBoth || lane < 3;
+    // Lanes widen a's centre, b's centre, the origin; three each.
+    const double own = lane < 3              ? one_of(centre_a, k)
+                       : (lane < 6 && kBoth) ? one_of(centre_b, k)
+                                             : one_of(origin, k);
+    double c[3];
+    for (unsigned i = 0; i < 3; ++i) {
+        c[i] = __shfl_sync(kAllLanes, own, static_cast<int>(is_a ? i : 3 + i));
+    }
+    const double from = __shfl_sync(kAllLanes, own, static_cast<int>(6 + k));
+    const Pose& p = is_a ? q.pose : q.inverse;
+    const auto moved = static_cast<float>(
+        moved_coordinate(p, static_cast<int>(k), c[0], c[1], c[2], is_a ? from : 0.0));
+    MovedCentres out;
+    for (int i = 0; i < 3; ++i) {
+        out.a[i] = __shfl_sync(kAllLanes, moved, i);
+        out.b[i] = kBoth ? __shfl_sync(kAllLanes, moved, 3 + i) : 0.0F;
+    }
+    return out;
+}
+
+/// This lane's triangle moved about its leaf's centre, which gets to `shift`; v takes the nine
+/// coordinates unless null.
+__device__ __forceinline__ TightBox move_triangle(const Frame& f, const float* centre,
+                                                  const float* shift, const TreeLeaf& leaf,
+                                                  unsigned lane, float* v) {
     TightBox box;
     for (int i = 0; i < 3; ++i) {
-        const double x = leaf.v[3 * i][lane], y = leaf.v[3 * i + 1][lane],
-                     z = leaf.v[3 * i + 2][lane];
+        const V x{leaf.v[3 * i][lane] - centre[0]}, y{leaf.v[3 * i + 1][lane] - centre[1]},
+            z{leaf.v[3 * i + 2][lane] - centre[2]};
         for (int k = 0; k < 3; ++k) {
-            const float c = V::moved(p.r[k], p.t[k] - static_cast<double>(origin[k]), x, y, z).v;
+            const float c = moved_about(f, k, shift[k], x, y, z).v;
             if (v != nullptr) {
                 v[3 * i + k] = c;
             }

@@ -17,6 +17,7 @@ struct Tile {
     TightBox tight[kNodeWidth];                // of a's triangles
     float low[kLeafPairs];                     // bounds of the pairs, mm
     std::uint16_t pairs[kLeafPairs];           // place in a, place in b: five bits each
+    float d;                                   // of scale_of
     std::uint32_t count, before, batch_before;
 };
 
@@ -25,13 +26,15 @@ __device__ void move_leaves(const PreparedQuery& q, const TreeNode& a, const Tre
                             const float* origin, Tile& tile) {
     const unsigned lane = lane_of_thread(), warp = threadIdx.x / kWarp;
     if (warp == 0) {
+        const MovedCentres to = move_centres<false>(q, a.box.c, nullptr, origin);
         float v[9];
-        tile.tight[lane] = move_triangle(q.pose, origin, q.a.leaves[a.leaf], lane, v);
+        tile.tight[lane] = move_triangle(q.c.a_in_b, a.box.c, to.a, q.a.leaves[a.leaf], lane, v);
         for (int k = 0; k < 9; ++k) {
             tile.a[k][lane] = v[k];
         }
         if (lane == 0) {
             tile.count = 0;
+            tile.d = leaf_d(q.c.d32, a.box);
         }
     } else if (warp == 1) {
         for (int k = 0; k < 9; ++k) {
@@ -91,7 +94,7 @@ __device__ void measure(const DeviceBuffers& buffers, const PreparedQuery& q, co
     const std::size_t row = std::size_t{at.query} * buffers.limits.candidates;
     for (unsigned i = threadIdx.x; i < tile.count; i += kThreads) {
         const unsigned place_a = tile.pairs[i] >> 5U, place_b = tile.pairs[i] & 31U;
-        const auto p = float_pair(tile.a, place_a, tile.b, place_b, q.c.d32);
+        const auto p = float_pair(tile.a, place_a, tile.b, place_b, tile.d);
         const auto closest = sat::closest_direction(p, sat::axes_of(p));
         const float proven = sat::certified_distance(p, closest.direction);
         const float low = lanes::max(proven, tile.low[i]);

@@ -94,8 +94,10 @@ __device__ bool is_near_child(const PreparedQuery& q, const TreeNode& child_a, c
     bool near = wanted && is_near<false>(q.c.a_in_b, moved, box);
     if (ballot(near) != 0 && is_leaf(child_a)) {
         const Moved own = moved_box(q.c.a_in_b, child_a.box.c, child_a.box.h);
-        const TightBox whole = whole_of(
-            move_triangle(q.pose, own.c, q.a.leaves[child_a.leaf], lane_of_thread(), nullptr));
+        const float* const centre = child_a.box.c;
+        const MovedCentres to = move_centres<false>(q, centre, nullptr, own.c);
+        const TightBox whole = whole_of(move_triangle(
+            q.c.a_in_b, centre, to.a, q.a.leaves[child_a.leaf], lane_of_thread(), nullptr));
         near = near && !apart_from_tight(whole, box.c, box.h, own.c, q.c.tight_slack);
     }
     return near;

@@ -94,8 +94,9 @@ __device__ double leaf_bound(const PreparedQuery& q, const PairEntry& at, Shared
     const unsigned lane = lane_of_thread(), warp = threadIdx.x / kWarp;
     if (warp == 0) {
         const Moved own = moved_box(q.c.a_in_b, a.box.c, a.box.h);
+        const MovedCentres to = move_centres<false>(q, a.box.c, nullptr, own.c);
         float v[9];
-        move_triangle(q.pose, own.c, q.a.leaves[a.leaf], lane, v);
+        move_triangle(q.c.a_in_b, a.box.c, to.a, q.a.leaves[a.leaf], lane, v);
         for (int k = 0; k < 9; ++k) {
             shared.a[k][lane] = v[k];
             shared.b[k][lane] = q.b.leaves[b.leaf].v[k][lane] - own.c[k % 3];

@@ -28,6 +28,7 @@ constexpr unsigned kWarps = 4, kThreads = kWarps * kWarp, kBlocksPerMultiprocess
 /// One warp's tile.
 struct Tile {
     float a[9][kNodeWidth], b[9][kNodeWidth];  // less the common origin
+    float d;                                   // of scale_of
     std::uint16_t pairs[kLeafPairs];           // place in a, place in b: five bits each
     PairEntry at;
     std::uint32_t count;    // of the pairs; 0 where they are not to be tested
@@ -81,13 +82,17 @@ struct ClippedLeaf {
 __device__ ClippedLeaf move_leaves(const PreparedQuery& q, const Leaves& l, Tile& tile) {
     const unsigned lane = lane_of_thread();
     const float slack = q.c.tight_slack, none[3] = {0, 0, 0};
+    const MovedCentres to = move_centres<true>(q, l.a.box.c, l.b.box.c, l.origin);
     ClippedLeaf c;
     float v[9];
-    c.tight_a = move_triangle(q.pose, l.origin, l.leaf_a, lane, v);
+    c.tight_a = move_triangle(q.c.a_in_b, l.a.box.c, to.a, l.leaf_a, lane, v);
     for (int k = 0; k < 9; ++k) {
         tile.a[k][lane] = v[k];
     }
-    c.tight_b = move_triangle(q.inverse, none, l.leaf_b, lane, nullptr);
+    if (lane == 0) {
+        tile.d = leaf_d(q.c.d32, l.a.box);
+    }
+    c.tight_b = move_triangle(q.c.b_in_a, l.b.box.c, to.b, l.leaf_b, lane, nullptr);
     for (int k = 0; k < 9; ++k) {
         tile.b[k][lane] = l.leaf_b.v[k][lane] - l.origin[k % 3];
     }
@@ -284,7 +289,7 @@ template <class Lane>
 __device__ __forceinline__ void test(const DeviceBuffers& buffers, const Tile& tile,
                                      const AxisTile* axes, unsigned i) {
     const PreparedQuery& q = buffers.prepared[tile.at.query];
-    const sat::PairLimits<Lane> limits{{q.c.d32}, {q.c.margin}, {q.c.r_square}};
+    const sat::PairLimits<Lane> limits{{tile.d}, {q.c.margin}, {q.c.r_square}};
     const unsigned place_a = tile.pairs[i] >> 5U, place_b = tile.pairs[i] & 31U;
     const LaneVertices<Lane> v = in_lane<Lane>(vertices_of(tile.a, place_a, tile.b, place_b));
     sat::StoredAxes<float> stored;
@@ -304,7 +309,7 @@ __device__ __forceinline__ void test(const DeviceBuffers& buffers, const Tile& t
         buffers.prepared[*static_cast<const volatile std::uint32_t*>(&tile.at.query)];
     const unsigned places = *static_cast<const volatile std::uint16_t*>(&tile.pairs[i]);
     const bool is_near =
-        again.c.has_margin && sat::certified_within(sat::scaled_pair(v.a, v.b, Lane{again.c.d32}),
+        again.c.has_margin && sat::certified_within(sat::scaled_pair(v.a, v.b, Lane{tile.d}),
                                                     edges_square, Lane{again.near_mm});
     const bool is_farther = again.kind == QueryKind::farther;
     if (buffers.limits.is_stage && !(again.is_float_only && is_farther)) {
