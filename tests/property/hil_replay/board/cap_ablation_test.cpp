@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ctest-labels: long
+// ctest-labels: night
 // What each rule of permit, ack and cap is for: the approaches of cap_approach_test.cpp, drawn for
 // what a rule prevents. As they are none touches; with the rule made wrong some do, or another rule
 // catches it. AXG_COUNT: approaches of each; AXG_SEED: the first.
