@@ -265,7 +265,7 @@ class ApproachRun {
         const CapPromise promise = machine_.guard.cap;
         std::optional<StopCertificate> certificate = make_stop_certificate(scene_.loaded);
         std::optional<SpeedAdvisory> advisory =
-            promise != CapPromise::none ? SpeedAdvisory::create(machine_, true) : std::nullopt;
+            promise != CapPromise::none ? SpeedAdvisory::create(machine_) : std::nullopt;
         GuardChain chain(machine_, scene_.engine->engine(), *scene_.containment_test, &*certificate,
                          advisory ? &*advisory : nullptr);
         LazyMotion motion(of_board_, drawn_.approach,

@@ -58,9 +58,10 @@ struct Bench {
         return result;
     }
     /// So many; the first result that stops.
-    std::optional<CycleResult> steps(int count, const CapFacts& facts, double step_mm) {
+    std::optional<CycleResult> steps(int count, const CapFacts& facts, double step_mm,
+                                     const CapWish& wish = {}) {
         for (int i = 0; i < count; ++i) {
-            const CycleResult result = step(facts, step_mm);
+            const CycleResult result = step(facts, step_mm, wish);
             if (result.is_stop) {
                 return result;
             }
@@ -122,7 +123,7 @@ TEST(CapGuard, AnOrderThatIsNotAcknowledgedInTimeStops) {
     bench.step(facts_at(kCapRapid), 0, kSlower);
     const int most = static_cast<int>(cap_answer_seconds(bench.machine) * 1e3);
     for (const bool in_time : {true, false}) {
-        const auto stop = bench.steps(in_time ? most - 1 : 3, facts_at(kCapRapid), 0);
+        const auto stop = bench.steps(in_time ? most - 1 : 3, facts_at(kCapRapid), 0, kSlower);
         ASSERT_EQ(stop.has_value(), !in_time);
         if (stop) {
             EXPECT_EQ(stop->reason, StopReason::left_cap);
