@@ -97,6 +97,25 @@ struct Tally {
     double worst_error = 0;  // of a coordinate beyond its own rounding, in u h
 };
 
+/// Section 4: |computed - true| <= u |computed| + 8u d, for every coordinate.
+void check_vertices(const Moved1& moved, const Aabb& leaf, const ExactTriangle& truth,
+                    const char* name, Tally& tally) {
+    const double h = std::max({leaf.h[0], leaf.h[1], leaf.h[2]});
+    for (std::size_t i = 0; i < 3; ++i) {
+        const float got[3] = {moved.v[i].x, moved.v[i].y, moved.v[i].z};
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Dyadic error = Dyadic(got[k]) + Dyadic(moved.origin[k]) - truth[i][k];
+            const double own = kUnit * std::fabs(double(got[k]));
+            const Dyadic allowed = Dyadic(own) + Dyadic(8 * kUnit * moved.leaf_d);
+            EXPECT_GE((allowed - error).sign(), 0) << name;
+            EXPECT_GE((allowed + error).sign(), 0) << name;
+            tally.worst_error = std::max(
+                tally.worst_error,
+                (std::fabs(error.value().get_d()) - own - 8 * kUnit * moved.c.d32) / (kUnit * h));
+        }
+    }
+}
+
 class Adversary {
   public:
     Adversary(std::mt19937_64& random, const LeafKind& kind) : random_(random), kind_(kind) {
@@ -127,7 +146,7 @@ class Adversary {
         const Triangle &ta = a_.triangles.back(), &tb = b_.triangles.back();
         const ExactTriangle truth = placed(q_.pose, ta);
         const Moved1 moved(q_, a_, b_, leaf_, ta);
-        check_vertices(moved, truth, tally);
+        check_vertices(moved, leaf_, truth, kind_.name, tally);
         const ExactSquare distance = squared_distance(truth, exact(tb));
         if (distance.more_than(q_.r_mm)) {
             return;  // roundings of b's triangle put it beyond
@@ -244,24 +263,6 @@ class Adversary {
                          {at[2][0], at[2][1], at[2][2]}}};
     }
 
-    /// Section 4: |computed - true| <= u |computed| + 8u d, for every coordinate.
-    void check_vertices(const Moved1& moved, const ExactTriangle& truth, Tally& tally) const {
-        const double h = std::max({leaf_.h[0], leaf_.h[1], leaf_.h[2]});
-        for (std::size_t i = 0; i < 3; ++i) {
-            const float got[3] = {moved.v[i].x, moved.v[i].y, moved.v[i].z};
-            for (std::size_t k = 0; k < 3; ++k) {
-                const Dyadic error = Dyadic(got[k]) + Dyadic(moved.origin[k]) - truth[i][k];
-                const double own = kUnit * std::fabs(double(got[k]));
-                const Dyadic allowed = Dyadic(own) + Dyadic(8 * kUnit * moved.leaf_d);
-                EXPECT_GE((allowed - error).sign(), 0) << kind_.name;
-                EXPECT_GE((allowed + error).sign(), 0) << kind_.name;
-                tally.worst_error = std::max(tally.worst_error, (std::fabs(error.value().get_d()) -
-                                                                 own - 8 * kUnit * moved.c.d32) /
-                                                                    (kUnit * h));
-            }
-        }
-    }
-
     std::mt19937_64& random_;
     const LeafKind& kind_;
     int k_ = 0;
@@ -292,6 +293,32 @@ TEST(LeafMotion, ATriangleThatIsNotApartIsNeverClaimedToBe) {
     }
     EXPECT_GT(cases, count * std::size(kKinds) / 2) << "hardly a pair is judged";
     EXPECT_GT(without_leaf, cases / 10) << "the term is not what keeps the claims true";
+}
+
+// Found by an adversary that chose rows and corners so that all roundings go one way: nearly the
+// whole term is needed, so no smaller factor would do.
+TEST(LeafMotion, NearlyTheWholeTermIsNeeded) {
+    Mesh a{"a", {}}, b{"b", {}};
+    const Vec3f low{-0x1.6131dp+4F, -0x1.fd2cep+4F, -0x1.12014cp+5F};
+    const Vec3f high{0x1.4f67b2p+5F, 0x1.016a2ap+5F, 0x1.dbfe9cp+4F};
+    const Vec3f v{0x1.4f6792p+5F, -0x1.fd2c4cp+4F, -0x1.12012ep+5F};
+    a.triangles = {{low, low, low}, {high, high, high}};
+    b.triangles = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
+    Query q{.mesh_a = 0, .mesh_b = 1, .pose = {}};
+    const double rows[3][3] = {{0x1.28b6ccfe69ac9p-1, 0x1.00039b02814acp-1, 0x1.497c9f007011ap-1},
+                               {-0x1.a13f0cc19eb3dp-1, 0x1.65e01c5dc32b1p-2, 0x1.d96aa8d66b9eep-2},
+                               {0x1.9ac30eb21895p-8, -0x1.95afea93ccd3fp-1, 0x1.385521beb8365p-1}};
+    const double shift[3] = {-0x1.1ce6f5000001p+2, 0x1.dc90580c138e6p+1, 0x1.f2e9daa97c288p+1};
+    for (int i = 0; i < 3; ++i) {
+        std::copy(rows[i], rows[i] + 3, q.pose.r[i]);
+        q.pose.t[i] = shift[i];
+    }
+    const Triangle triangle{v, v, v};
+    const Aabb leaf = build_tree(a.triangles).nodes[0].box;
+    Tally tally;
+    check_vertices(Moved1(q, a, b, leaf, triangle), leaf, placed(q.pose, triangle), "corner",
+                   tally);
+    EXPECT_GT(tally.worst_error, 4.6) << "in u h, of 5.39";
 }
 
 }  // namespace
