@@ -37,7 +37,11 @@ AxisCaps CapGuard::bound_caps(const CapOrder& order) const noexcept {
 /// The board may keep more than was ordered: it still slows down.
 bool CapGuard::is_above() const noexcept {
     const AxisCaps ordered = caps_of_permit(order().cap, order().mask);
-    return higher_caps(ordered, facts_.acked) != ordered;
+    bool is_any = false;
+    for (std::size_t i = 0; i < machine_->axes.size(); ++i) {
+        is_any = is_any || facts_.acked[i] > ordered[i];
+    }
+    return is_any;
 }
 
 bool CapGuard::asks_raise() const noexcept {
@@ -88,6 +92,9 @@ void CapGuard::note(const AxisSnapshot& snapshot, const CapFacts& facts, bool is
         return;
     }
     facts_ = facts;
+    // Of axes that are not there nothing is recorded: a replay must come to the same order.
+    std::fill(facts_.acked.begin() + static_cast<std::ptrdiff_t>(machine_->axes.size()),
+              facts_.acked.end(), kCapRapid);
     latched_us_ = snapshot.latched_us;
     error_ = error;
     seen_count_ = is_first ? 0 : seen_count_;
@@ -122,6 +129,12 @@ void CapGuard::note_fall(const CapOrder& before) noexcept {
     const AxisCaps was = caps_of_permit(before.cap, before.mask);
     const AxisCaps is = caps_of_permit(order().cap, order().mask);
     fell_us_ = higher_caps(was, is) != is ? latched_us_ : fell_us_;
+}
+
+void CapGuard::set_order(const CapOrder& order) noexcept {
+    const CapOrder before = control_.order();
+    control_.set_order(order);
+    note_fall(before);  // the board has its time from this order on, too
 }
 
 /// Whatever it orders was proven: the bounds of the proof were no lower.

@@ -50,8 +50,8 @@ class CapGuard {
     void judge(const StopCycle& cycle, const CapWish* wish, bool is_armed,
                CycleResult& result) noexcept;
 
-    /// What the last permit ordered, where a dump that begins later says so.
-    void set_order(const CapOrder& order) noexcept { control_.set_order(order); }
+    /// What the permit for the newest snapshot ordered, where a dump that begins later says so.
+    void set_order(const CapOrder& order) noexcept;
     [[nodiscard]] const CapOrder& order() const noexcept { return control_.order(); }
 
   private:

@@ -218,7 +218,6 @@ void BlackBoxReplay::on(const LiveResult& live_result) {
         LiveResult dated = live_result;
         dated.result = made;
         guard_->on(dated, turn_us_);
-        chain_.update_advisories();
     }
     if (made.is_stop && !has_verdict_) {
         stopped_ = withheld_;
@@ -230,8 +229,12 @@ void BlackBoxReplay::on(const LiveResult& live_result) {
                     .latched_us = queried->event.snapshot.latched_us};
     }
     compare(live_result, made);
-    if (!guard_) {  // without the advisories it follows what was ordered
+    if (!guard_) {  // it knows nothing of before, and follows what was ordered
         chain_.set_cap_order(live_result.result.cap_order);
+    }
+    // What a permit says besides; of a cap that is enforced, when it asks the proof about a raise.
+    if (guard_ || machine_.guard.cap != CapPromise::none) {
+        chain_.update_advisories();
     }
 }
 

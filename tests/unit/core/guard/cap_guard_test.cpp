@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <optional>
 
 namespace axg {
@@ -130,6 +131,28 @@ TEST(CapGuard, AnOrderThatIsNotAcknowledgedInTimeStops) {
             EXPECT_EQ(stop->cap_fact.kind, CapBreak::not_acknowledged);
         }
     }
+}
+
+// A replay that begins in the middle: the order was recorded, and its wait begins with it.
+TEST(CapGuard, AnOrderThatIsTakenOverHasItsTimeToo) {
+    Bench bench;
+    bench.snapshot.latched_us = 5'000'000;
+    EXPECT_FALSE(bench.step(facts_at(kCapRapid), 0).is_stop);
+    const CapOrder order{.cap = 100, .mask = 0xFF};
+    bench.guard.set_order(order);
+    const int most = static_cast<int>(cap_answer_seconds(bench.machine) * 1e3);
+    EXPECT_FALSE(bench.steps(most - 1, facts_at(kCapRapid), 0, {.best = order}));
+    EXPECT_TRUE(bench.steps(3, facts_at(kCapRapid), 0, {.best = order}));
+}
+
+// Of axes that the machine does not have a record holds nothing, and reads as rapid.
+TEST(CapGuard, AxesThatAreNotThereNeedNotAcknowledge) {
+    Bench bench;
+    const CapOrder order{.cap = 100, .mask = 0xFF};
+    bench.guard.set_order(order);
+    CapFacts facts = facts_at(100);
+    std::fill(facts.acked.begin() + 2, facts.acked.end(), kCapRapid);
+    EXPECT_FALSE(bench.steps(2000, facts, 0, {.best = order}));
 }
 
 TEST(CapGuard, APermitThatWasNeverSentStops) {
