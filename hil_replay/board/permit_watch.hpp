@@ -74,7 +74,7 @@ class PermitWatch {
     [[nodiscard]] bool is_slow() const noexcept { return is_slow_; }
     [[nodiscard]] std::uint64_t permits() const noexcept { return permits_; }
     [[nodiscard]] std::uint64_t refused() const noexcept { return refused_; }
-    /// State of the board's library, for ablations of its rules.
+    /// State of the board's library, for tests that change its rules.
     [[nodiscard]] axg_board& library() noexcept { return board_; }
 
   private:
