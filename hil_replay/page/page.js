@@ -217,7 +217,7 @@ class RunPage {
     if (pair !== null) lines.push(`${machine.pairs[pair].name}: ${least.toFixed(3)} mm`);
     const hasPermit = !stop && samples.permit[this.row] >= PERMIT_GONE;
     const valid = samples.valid_periods[this.row], cap = samples.cap_percent[this.row];
-    lines.push(!hasPermit ? "no permit" : valid === null ? "permit" : `permit for ${valid} periods`);
+    lines.push(!hasPermit ? "no permit" : !valid ? "permit" : `permit for ${valid} periods`);
     if (hasPermit && cap !== null && cap < 100) lines.push(`cap: ${cap.toFixed(1)} % of rapid`);
     const level = LEVELS[samples.level[this.row]];
     if (level !== "clear") lines.push(`level: ${level}`);

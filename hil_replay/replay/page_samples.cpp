@@ -48,9 +48,9 @@ void merge(std::span<const PageColumn> columns, std::span<double> a, std::span<c
 
 PageCycle page_cycle(bool has_permit, const CycleResult& result) {
     PageCycle cycle{.has_permit = has_permit};
-    if (has_permit) {
-        cycle.valid_periods = result.samples;
-        cycle.cap = result.has_cap ? std::optional(result.cap_order.cap) : std::nullopt;
+    cycle.valid_periods = has_permit ? result.samples : std::uint8_t{0};
+    if (result.has_cap) {
+        cycle.cap = result.cap_order.cap;
     }
     return cycle;
 }
@@ -92,7 +92,7 @@ void PageSamples::add(const AxisSnapshot& snapshot, const PageCycle& cycle,
              cycle.has_permit ? 1.0 : 0.0,
              cycle.spent_ns != 0 ? static_cast<double>(cycle.spent_ns) * 1e-3 : kNothing,
              static_cast<double>(cycle.clearance_level),
-             cycle.valid_periods != 0 ? cycle.valid_periods : kNothing,
+             cycle.valid_periods ? *cycle.valid_periods : kNothing,
              cycle.cap ? 100.0 * *cycle.cap / kCapRapid : kNothing};
     const double seconds = static_cast<double>(snapshot.latched_us - last_.latched_us) * 1e-6;
     for (std::size_t i = 0; i < machine_.axes.size(); ++i) {

@@ -42,9 +42,9 @@ struct PageCycle {
     bool has_permit = false;
     std::int64_t spent_ns = 0;  // 0: not measured
     ClearanceLevel clearance_level = ClearanceLevel::clear;
-    // Of the permit: periods for which it is proven (0: none, or not known), and the cap that it
-    // orders, 1/250 of rapid, where it orders one.
-    std::uint8_t valid_periods = 0;
+    // Periods for which the permit is proven, 0: there is none; and the cap that it orders, 1/250
+    // of rapid. Empty: not known, or no cap is ordered.
+    std::optional<std::uint8_t> valid_periods{};
     std::optional<std::uint8_t> cap{};
 };
 

@@ -85,7 +85,7 @@ void expect_row(const PageSamples& page, std::size_t row, std::span<const Sample
     EXPECT_EQ(at("X_most_mm"), -least([&](const Sample& s) { return -x(s); }));
     EXPECT_EQ(at("permit"), least([](const Sample& s) { return s.cycle.has_permit ? 1.0 : 0.0; }));
     EXPECT_EQ(at("valid_periods"),
-              least([](const Sample& s) { return static_cast<double>(s.cycle.valid_periods); }));
+              least([](const Sample& s) { return static_cast<double>(*s.cycle.valid_periods); }));
     EXPECT_EQ(at("cap_percent"), least([](const Sample& s) { return 100.0 * *s.cycle.cap / 250; }));
     EXPECT_EQ(at("cycle_us"), -least([](const Sample& s) {
                   return -static_cast<double>(s.cycle.spent_ns) * 1e-3;
