@@ -6,7 +6,6 @@
 
 #include "core/base/assert.hpp"
 #include "core/base/sincos.hpp"
-#include "core/certificate/permit_ladder.hpp"
 
 namespace axg {
 namespace {

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "core/base/assert.hpp"
-#include "core/certificate/permit_ladder.hpp"
 #include "core/certificate/steered_samples.hpp"
 #include "core/guard/order_list.hpp"
 #include "core/machine/cycle_plan.hpp"
