@@ -279,7 +279,9 @@ void read_permit_samples(MapReader& reader, MachineDraft& draft) {
     const WholeRange range{2, can.format == CanFormat::classical ? 12U : 15U};
     const std::string wanted = "an integer from " + std::to_string(range.min) + " to " +
                                std::to_string(range.max) + ", or two of them: [least, most]";
-    can.permit_samples = can.permit_version == 2 ? kPermitSamplesUsual : PermitSamples{};
+    can.permit_samples = can.permit_version != 2       ? PermitSamples{}
+                         : can.look_ahead_samples != 0 ? kPermitSamplesLonger
+                                                       : kPermitSamplesUsual;
     const YamlNode* node = reader.find("permit_samples", Need::optional, wanted);
     draft.states_permit_samples = node != nullptr;
     if (node == nullptr) {

@@ -99,7 +99,7 @@ void read_cap(MapReader& reader, MachineDraft& draft) {
     } else {
         machine.guard.cap = static_cast<CapPromise>(cap);
         if (!draft.states_permit_samples) {
-            machine.can.permit_samples = kPermitSamplesCapped;
+            machine.can.permit_samples = kPermitSamplesLonger;
         }
     }
 }

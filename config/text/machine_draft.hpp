@@ -27,7 +27,7 @@ struct MachineDraft {
     FaultList& faults;
     const NamedFiles& files;
     CanSource can_source = CanSource::classical;
-    bool states_permit_samples = false;  // else they follow from `permit` and guard.cap
+    bool states_permit_samples = false;  // else they follow from `permit`, `ahead` and guard.cap
     std::vector<int> axis_lines{}, body_lines{}, tool_lines{};
     ClearanceLevelDistances usual_clearance_levels{};  // of pairs that state none
     bool surfaces_are_sound = true;  // each body says readably whether it is the tool

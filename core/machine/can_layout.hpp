@@ -68,9 +68,9 @@ struct PermitSamples {
     return samples.most > samples.least;
 }
 inline constexpr PermitSamples kPermitSamplesUsual{3, 12};  // where the permit says its n
-// With guard.cap the machine slows down where no longer permit is proven, so that a lost frame
-// never costs the only permit.
-inline constexpr PermitSamples kPermitSamplesCapped{8, 12};
+// Where it costs little that a lost frame never costs the only permit: with guard.cap the machine
+// slows down where no longer permit is proven, and a look-ahead path says where the axes go.
+inline constexpr PermitSamples kPermitSamplesLonger{8, 12};
 
 /// Ids default to docs/reference/protocol.md: motion board = node 1, guard = node 2.
 struct CanLayout {

@@ -39,7 +39,7 @@ CapRun drive_with(const Example& example, const CapCase& one) {
     EXPECT_TRUE(load_example(example.machine, loaded));
     loaded.machine.guard.cap = one.promise;
     if (one.promise != CapPromise::none) {  // as the machine file is read
-        loaded.machine.can.permit_samples = kPermitSamplesCapped;
+        loaded.machine.can.permit_samples = kPermitSamplesLonger;
     }
     const Machine& machine = loaded.machine;
     const Program program = read_example(example.program, machine);

@@ -197,6 +197,8 @@ TEST(MachineGuard, APathIsKeptWhereThereIsLookAhead) {
     EXPECT_EQ(silent.can.look_ahead_samples, 0U);
     EXPECT_EQ(look_ahead.can.look_ahead_samples, 200U);
     EXPECT_EQ(look_ahead.can.look_ahead_id, 0x480U);
+    EXPECT_EQ(silent.can.permit_samples, (PermitSamples{3, 12}));
+    EXPECT_EQ(look_ahead.can.permit_samples, (PermitSamples{8, 12}));
     EXPECT_EQ(look_ahead.can.look_ahead_data_id, 7U);
     EXPECT_EQ(look_ahead.guard.promise, StopPromise::independent) << "a frame is no promise";
     const std::string keeping =
