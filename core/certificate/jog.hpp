@@ -10,6 +10,7 @@
 
 #include "core/certificate/motion_history.hpp"
 #include "core/machine/axis_snapshot.hpp"
+#include "core/machine/cycle_work.hpp"
 #include "core/machine/machine.hpp"
 
 namespace axg {
@@ -32,8 +33,12 @@ inline constexpr double kJogGiveMm = 0.02;
 /// queries in place of a clearance. Rungs next to the floor in force are at most kJogRungMm apart.
 inline constexpr std::uint32_t kJogRungs = 16;
 inline constexpr double kJogRungMm = 0.05;
-inline constexpr std::uint32_t kJogLaddersMax = 32;  // pairs nearer than their margin
-inline constexpr double kNoJogFloor = -1;            // mm; no jog before this one counts
+inline constexpr double kNoJogFloor = -1;  // mm; no jog before this one counts
+/// Pairs nearer than their margin: more of them have no floor. Where a jog begins no more is asked
+/// than by the last stage of a plan.
+[[nodiscard]] constexpr std::uint32_t jog_ladders(const CyclePlan& plan) noexcept {
+    return std::clamp(plan.queries[plan.stages - 1] / (kJogRungs - 1), 1U, 32U);
+}
 
 /// Floors from the margin down, mm; below the last rung comes `before_mm`, or 0 without one.
 /// @param before_mm  the floor in force: what the jog before kept, which this one does not go

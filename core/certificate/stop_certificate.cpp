@@ -77,7 +77,7 @@ std::optional<StopCertificate> StopCertificate::create(const Machine& machine,
     const std::uint32_t pieces = has_path ? kPathPieces : 0;
     const bool has_jogs = machine.guard.jog.is_promised;
     const std::uint32_t rungs =
-        has_jogs ? std::max(slots, std::min(slots, kJogLaddersMax) * kJogRungs) : 0;
+        has_jogs ? std::max(slots, std::min(slots, jog_ladders(options.plan)) * kJogRungs) : 0;
     const std::uint32_t ladders = has_jogs ? slots : 0;
     Arena arena(Arena::size_bytes<JointBox>(pieces) +
                 Arena::size_bytes<BodyExtent>(surfaces.size()) + Arena::size_bytes<Slot>(slots) +
@@ -281,7 +281,7 @@ void StopCertificate::find_floors(const Engine& engine) noexcept {
     for (std::uint32_t i = 0; i < proof_count_; ++i) {
         pose_rungs(i, moved, errors, 0, rung_queries_.subspan(i, 1));
     }
-    ask_rungs(engine, proof_count_, 1, longest_lists(options_.plan));
+    ask_rungs(engine, proof_count_, 1, jog_lists(options_.plan).margins);
     std::uint32_t open = 0;
     for (std::uint32_t i = 0; i < proof_count_; ++i) {
         const bool is_kept =
@@ -291,7 +291,7 @@ void StopCertificate::find_floors(const Engine& engine) noexcept {
             below_[open++] = i;
         }
     }
-    if (open > kJogLaddersMax) {  // a machine that stands within so many margins
+    if (open > jog_ladders(options_.plan)) {  // a machine that stands within so many margins
         has_floors_ = false;
     } else if (open != 0) {
         find_lower_floors(engine, moved, errors, open);
@@ -305,7 +305,7 @@ void StopCertificate::find_lower_floors(const Engine& engine, std::span<const Po
     for (std::uint32_t i = 0; i < open; ++i) {
         pose_rungs(below_[i], moved, errors, 1, rung_queries_.subspan(i * kBelow, kBelow));
     }
-    ask_rungs(engine, open, kBelow, longest_lists(options_.plan));
+    ask_rungs(engine, open, kBelow, jog_lists(options_.plan).rungs);
     for (std::uint32_t i = 0; i < open; ++i) {
         take_floor(below_[i], rung_results_.subspan(i * kBelow, kBelow));
     }
@@ -366,10 +366,13 @@ double StopCertificate::floor_before(const Slot& slot) const noexcept {
     return holds ? slot.floor_kept_mm : kNoJogFloor;
 }
 
-/// In a jog a pair keeps its floor in place of its margin. False: it is not known.
+/// In a jog a pair keeps its floor in place of its margin. False: it is not known, or was only
+/// found now: what finds it takes as long as a proof, and a cycle has room for one of them.
 bool StopCertificate::keep_floors(const Engine& engine) noexcept {
     if (!has_floors_ || floors_at_ == snapshot_.sample) {
         find_floors(engine);
+        begins_jog_ = has_floors_;
+        return false;
     }
     for (std::uint32_t i = 0; i < proof_count_; ++i) {
         tasks_[i].margin_mm = slots_[queried_[i]].floor_mm;
@@ -464,7 +467,7 @@ void StopCertificate::prove(const Engine& engine,
                             const ContainmentTest& containment_test) noexcept {
     proof_count_ = containment_tests_ = 0;
     work_ = {};
-    is_path_known_ = is_longer_proven_ = false;
+    is_path_known_ = is_longer_proven_ = begins_jog_ = false;
     const PermitSamples range = machine_->can.permit_samples;
     samples_ = range.least;
     ladder_next_ = ladder_;
@@ -566,6 +569,9 @@ void StopCertificate::keep() noexcept {
     is_limit_judged_ = true;
     asks_raise_ = false;
     ladder_ = ladder_next_;
+    if (begins_jog_) {
+        return;  // boxes that were proven before are still where nothing crosses a surface
+    }
     std::uint32_t next = 0;
     for (std::uint32_t i = 0; i < slot_count_; ++i) {
         const bool is_queried = next < proof_count_ && queried_[next] == i;

@@ -59,8 +59,9 @@ struct StopCycle {
     std::uint8_t samples = 0;  // n: all of it is proven of a permit that is valid for so many
     // The longer permit that was tried is, with the bounds of ask_raise where that was called.
     bool is_longer_proven = false;
-    bool is_jog = false;     // proven of the jog that the board reports, and of nothing else
-    bool is_moving = false;  // the board says that its axes move
+    bool is_jog = false;      // proven of the jog that the board reports, and of nothing else
+    bool begins_jog = false;  // what each pair keeps in it was found, and nothing is proven yet
+    bool is_moving = false;   // the board says that its axes move
     std::span<const PairProof> proofs{};
     LimitFact limit{};  // for left_limits
 };
@@ -91,8 +92,8 @@ class StopCertificate {
 
     /// Bounds where the axes can get, and runs the queries. The same for the same snapshots, until
     /// `keep`. Cost: at most the plan, and a containment test for each pair whose position has left
-    /// the box that was proven last; where a jog begins, the lists of two stages once more, for a
-    /// query a pair and kJogRungs - 1 of each that has less than its margin.
+    /// the box that was proven last. Where a jog begins nothing is proven: two calls and the
+    /// known-answer test take the plan's place (jog_lists).
     void prove(const Engine& engine, const ContainmentTest& containment_test) noexcept;
 
     /// What was proven becomes what the next position is looked for in.
@@ -106,13 +107,13 @@ class StopCertificate {
     [[nodiscard]] StopCycle cycle() const noexcept {
         return {.status = status_,
                 .known_answer_signature = work_.known_answer_signature,
-                .is_settled = is_path_known_ || jog_.is_on() ||
-                              (!keeps_path() && !has_left_path_ && history_.count == kSamplesKept),
+                .is_settled = !begins_jog_ && (is_path_known_ || jog_.is_on() || knows_speeds()),
                 .samples = samples_,
                 .is_longer_proven = is_longer_proven_,
                 .is_jog = jog_.is_on(),
+                .begins_jog = begins_jog_,
                 .is_moving = snapshot_.mode == kModeMoving,
-                .proofs = proofs_.first(proof_count_),
+                .proofs = proofs_.first(begins_jog_ ? 0 : proof_count_),
                 .limit = broken_limit_};
     }
     [[nodiscard]] const StagedWork& work() const noexcept { return work_; }
@@ -167,6 +168,9 @@ class StopCertificate {
     void note_jog(bool is_first) noexcept;
     void note_tool(const AxisSnapshot& before, bool is_first) noexcept;
     [[nodiscard]] JointBox jog_box(std::uint32_t samples) const noexcept;
+    [[nodiscard]] bool knows_speeds() const noexcept {
+        return !keeps_path() && !has_left_path_ && history_.count == kSamplesKept;
+    }
     [[nodiscard]] bool keep_floors(const Engine& engine) noexcept;
     void find_floors(const Engine& engine) noexcept;
     void find_lower_floors(const Engine& engine, std::span<const Pose> moved,
@@ -227,6 +231,7 @@ class StopCertificate {
     JogWatch jog_;
     bool has_left_jog_ = false;
     bool has_floors_ = false;                     // of the jog that is on
+    bool begins_jog_ = false;                     // they were found by the last `prove`
     std::uint64_t floors_at_ = 0;                 // the sample that they were found at
     std::uint64_t path_until_ = 0;                // sample up to which the path is queried
     JointBox box_;                                // that is queried

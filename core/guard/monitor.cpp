@@ -196,7 +196,7 @@ CycleResult judge(const StopCycle& cycle, bool ready, bool is_armed) noexcept {
     // jog is chosen by a person: one that is not proven is no motion yet.
     const bool is_loose = ready && cycle.is_settled && cycle.is_moving && !cycle.is_jog;
     result.is_stop = !is_proven && (is_armed || is_loose || !may_wait);
-    result.has_permit = ready && is_proven;
+    result.has_permit = ready && is_proven && !cycle.begins_jog;
     return result;
 }
 

@@ -166,20 +166,19 @@ inline constexpr std::uint32_t kLastForSecond = 16;
     return sum;
 }
 
-/// Of each list, the longest of any stage: what a call may use that is a stage of its own.
-[[nodiscard]] constexpr WorkLists longest_lists(const CyclePlan& plan) noexcept {
-    WorkLists most;
-    const auto take = [](std::uint32_t& list, std::uint32_t stage) {
-        list = stage > list ? stage : list;
-    };
-    for (const WorkLists& stage : plan.lists) {
-        take(most.node_pairs, stage.node_pairs);
-        take(most.leaf_pairs, stage.leaf_pairs);
-        take(most.box_rows, stage.box_rows);
-        take(most.triangle_pairs, stage.triangle_pairs);
-        take(most.rechecks, stage.rechecks);
+/// What the snapshot where a jog begins may use, which is proven nothing of: no more than a cycle
+/// of the plan's stages. Of three the last has most of the rows, which whole boxes need, and the
+/// second most of the pairs of leaves and triangles, which queries about a near pair need.
+struct JogLists {
+    WorkLists margins;  // a query a pair
+    WorkLists rungs;    // all rungs of the pairs that have less than their margin
+};
+[[nodiscard]] constexpr JogLists jog_lists(const CyclePlan& plan) noexcept {
+    if (plan.stages == 1) {
+        const WorkLists half = share_of(plan.lists[0], 2);
+        return {half, half};
     }
-    return most;
+    return {plan.lists[plan.stages == 2 ? 0 : 2], plan.lists[1]};
 }
 
 /// What a machine file says of a cycle's plan (core/machine/cycle_plan.hpp).

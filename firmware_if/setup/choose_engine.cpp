@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/certificate/jog.hpp"
 #include "core/certificate/pair_queries.hpp"
 #include "core/machine/cycle_plan.hpp"
 #include "cuda/bench/measure_worst_case.hpp"
@@ -50,10 +49,9 @@ bool is_admitted(const LoadedMachine& loaded, const CudaEngine& gpu, const Cycle
                  std::uint32_t multiprocessors, ChosenEngine& out) {
     CudaOptions options;
     options.multiprocessors = multiprocessors;
-    WorstCaseCycle cycle = longest_gpu_cycle(loaded.machine.capacities, demand, gpu.tree_levels());
-    cycle.count = kWorstCaseCycles;
-    const std::optional<WorstCaseMeasurement> measured =
-        measure_worst_case(options, cycle, out.words);
+    const std::optional<WorstCaseMeasurement> measured = measure_slowest(
+        options, longest_gpu_cycles(loaded.machine.capacities, demand, gpu.tree_levels()),
+        kWorstCaseCycles, out.words);
     if (!measured) {
         out.refusal = EngineRefusal::no_gpu;
         return false;
@@ -61,7 +59,7 @@ bool is_admitted(const LoadedMachine& loaded, const CudaEngine& gpu, const Cycle
     out.longest_us = measured->us_max;
     out.words =
         fmt::format("{}: longest cycle ({} launches) {:.0f} us, limit {:.0f} us (deadline {} us)",
-                    name_of(measured->device), launches_of(cycle), out.longest_us,
+                    name_of(measured->device), launches_of(measured->cycle), out.longest_us,
                     demand.times.engine_us, demand.times.deadline_us);
     if (out.longest_us <= demand.times.engine_us) {
         return true;
@@ -93,24 +91,13 @@ EngineChoice engine_choice(const std::string& word, const Machine& machine) {
 CycleDemand cycle_demand(const Machine& machine, bool is_stoppable) noexcept {
     const TimeLimits times = time_limits(machine);
     if (!is_stoppable) {
-        return {.queries = kQueriesMax, .times = times};
+        return {.times = times};
     }
     const std::uint32_t tasks = stop_tasks(machine);
-    const CyclePlan plan = cycle_plan(machine, tasks);
-    const bool has_jogs = machine.guard.jog.is_promised;
-    // A ladder is asked of so many pairs at the most.
-    std::uint32_t queries = tries_longer(machine.can.permit_samples) ? 2 * tasks : tasks;
-    queries = has_jogs ? std::max(queries, kJogLaddersMax * (kJogRungs - 1)) : queries;
-    for (std::uint32_t stage = 1; stage < plan.stages; ++stage) {
-        queries = std::max(queries, plan.queries[stage]);
-    }
-    queries += 2;  // the known-answer test
-    constexpr std::uint32_t kMost = CudaOptions{}.queries_max;
-    return {.calls = plan.stages + (has_jogs ? 2U : 0U),
-            .launches = (queries + kMost - 1) / kMost,
-            .queries = queries,
-            .plan = plan,
+    return {.plan = cycle_plan(machine, tasks),
             .tasks = tasks,
+            .asks_twice = tries_longer(machine.can.permit_samples),
+            .has_jogs = machine.guard.jog.is_promised,
             .times = times};
 }
 

@@ -34,10 +34,10 @@ struct ChosenEngine {
 /// What a cycle may query on a GPU, at most. Without a plan a call may fill all lists of the
 /// engine.
 struct CycleDemand {
-    std::uint32_t calls = 1;                  // stages, and where a jog begins those of its ladders
-    std::uint32_t launches = 1, queries = 1;  // of a call
     std::optional<CyclePlan> plan{};  // stoppable: each stage fills the lists that it has there
-    std::uint32_t tasks = 0;          // queries of the first stage
+    std::uint32_t tasks = 0;          // pairs, each with one tool
+    bool asks_twice = false;          // the first stage has a query for a longer permit besides
+    bool has_jogs = false;
     TimeLimits times{};
 };
 [[nodiscard]] CycleDemand cycle_demand(const Machine& machine, bool is_stoppable) noexcept;

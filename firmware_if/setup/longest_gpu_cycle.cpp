@@ -2,7 +2,10 @@
 #include "firmware_if/setup/longest_gpu_cycle.hpp"
 
 #include <algorithm>
+#include <utility>
 
+#include "core/certificate/jog.hpp"
+#include "core/certificate/pair_queries.hpp"
 #include "core/worst_case/worst_case_batch.hpp"
 
 namespace axg {
@@ -30,38 +33,82 @@ Capacities capacities_of(Capacities capacities, const WorkLists& lists, std::uin
     return capacities;
 }
 
+/// Calls are added to a cycle one behind the other.
+class CycleMaker {
+  public:
+    CycleMaker(const Capacities& capacities, std::uint32_t tree_levels) : capacities_(capacities) {
+        cycle_.tree_levels = tree_levels;
+    }
+    CycleMaker& stage(const WorkLists& lists, std::uint32_t queries) {
+        const std::uint32_t most = std::min(queries, kMost);
+        return add(capacities_of(capacities_, lists, most, cycle_.tree_levels), queries, true);
+    }
+    CycleMaker& add(const Capacities& capacities, std::uint32_t queries, bool is_stage) {
+        cycle_.calls.push_back({.capacities = capacities,
+                                .queries = std::min(queries, kMost),
+                                .is_stage = is_stage,
+                                .times = (queries + kMost - 1) / kMost});
+        return *this;
+    }
+    [[nodiscard]] WorstCaseCycle take() { return std::move(cycle_); }
+
+  private:
+    static constexpr std::uint32_t kMost = CudaOptions{}.queries_max;
+    const Capacities& capacities_;
+    WorstCaseCycle cycle_;
+};
+
+constexpr std::uint32_t kKnownAnswers = 2;  // queries of the known-answer test, in every call
+
+WorkLists twice(const WorkLists& lists) noexcept {
+    return {2 * lists.node_pairs, 2 * lists.leaf_pairs, 2 * lists.box_rows,
+            2 * lists.triangle_pairs, 2 * lists.rechecks};
+}
+
 }  // namespace
 
-WorstCaseCycle longest_gpu_cycle(const Capacities& capacities, const CycleDemand& demand,
-                                 std::uint32_t tree_levels) {
-    WorstCaseCycle cycle;
-    cycle.tree_levels = tree_levels;
-    const auto add = [&](const WorkLists* lists, std::uint32_t queries, std::uint32_t times) {
-        constexpr std::uint32_t kMost = CudaOptions{}.queries_max;
-        const std::uint32_t launches = (queries + kMost - 1) / kMost;
-        const std::uint32_t most = std::min(queries, kMost);
-        if (times == 0) {
-            return;
-        }
-        cycle.calls.push_back(
-            {.capacities = lists != nullptr ? capacities_of(capacities, *lists, most, tree_levels)
-                                            : capacities,
-             .queries = most,
-             .is_stage = lists != nullptr,
-             .times = times * launches});
-    };
+std::vector<WorstCaseCycle> longest_gpu_cycles(const Capacities& capacities,
+                                               const CycleDemand& demand,
+                                               std::uint32_t tree_levels) {
     if (!demand.plan) {
-        add(nullptr, demand.queries, 1);
-        return cycle;
+        return {CycleMaker(capacities, tree_levels).add(capacities, kQueriesMax, false).take()};
     }
     const CyclePlan& plan = *demand.plan;
-    for (std::uint32_t stage = 0; stage < plan.stages; ++stage) {
-        add(&plan.lists[stage], (stage == 0 ? demand.tasks : plan.queries[stage]) + 2, 1);
+    CycleMaker proof(capacities, tree_levels);
+    const bool may_fill_twice = demand.asks_twice && plan.stages > 1;  // first_share_of
+    proof.stage(may_fill_twice ? twice(plan.lists[0]) : plan.lists[0],
+                (demand.asks_twice ? 2 : 1) * demand.tasks + kKnownAnswers);
+    for (std::uint32_t stage = 1; stage < plan.stages; ++stage) {
+        proof.stage(plan.lists[stage], plan.queries[stage] + kKnownAnswers);
     }
-    // Each is a stage of its own, with what any of them may use.
-    const WorkLists jog = longest_lists(plan);
-    add(&jog, demand.queries, demand.calls - plan.stages);
-    return cycle;
+    std::vector<WorstCaseCycle> cycles{proof.take()};
+    if (demand.has_jogs) {
+        const JogLists lists = jog_lists(plan);
+        const std::uint32_t ladders = std::min(demand.tasks, jog_ladders(plan));
+        cycles.push_back(CycleMaker(capacities, tree_levels)
+                             .stage(lists.margins, demand.tasks)
+                             .stage(lists.rungs, ladders * (kJogRungs - 1))
+                             .stage(kKnownAnswerShare, kKnownAnswers)
+                             .take());
+    }
+    return cycles;
+}
+
+std::optional<WorstCaseMeasurement> measure_slowest(const CudaOptions& options,
+                                                    std::vector<WorstCaseCycle> cycles,
+                                                    std::uint32_t count, std::string& fault) {
+    std::optional<WorstCaseMeasurement> slowest;
+    for (WorstCaseCycle& cycle : cycles) {
+        cycle.count = count;
+        std::optional<WorstCaseMeasurement> measured = measure_worst_case(options, cycle, fault);
+        if (!measured) {
+            return std::nullopt;
+        }
+        if (!slowest || measured->us_max > slowest->us_max) {
+            slowest = std::move(measured);
+        }
+    }
+    return slowest;
 }
 
 }  // namespace axg

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The longest cycle that a machine may ask of an engine on a GPU, as calls to be constructed and
-// measured: every stage of the plan full, one behind the other, and the calls of a jog; in contact
-// mode one batch. Source: docs/guide/gpu.md, "The longest cycle".
+// The longest cycles that a machine may ask of an engine on a GPU, as calls to be constructed and
+// measured: every stage of the plan full, one behind the other, or where a jog begins its ladders;
+// in contact mode one batch. Source: docs/guide/gpu.md, "The longest cycle".
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "core/machine/machine.hpp"
 #include "cuda/bench/measure_worst_case.hpp"
@@ -13,9 +16,15 @@
 namespace axg {
 
 /// @param tree_levels  CudaEngine::tree_levels() of the machine's engine
-/// @return             `count` is left as it is
-[[nodiscard]] WorstCaseCycle longest_gpu_cycle(const Capacities& capacities,
-                                               const CycleDemand& demand,
-                                               std::uint32_t tree_levels);
+/// @return             the proof's first; `count` is left as it is
+[[nodiscard]] std::vector<WorstCaseCycle> longest_gpu_cycles(const Capacities& capacities,
+                                                             const CycleDemand& demand,
+                                                             std::uint32_t tree_levels);
+
+/// The one of them that took longest, each measured `count` times in each layout. Empty, with
+/// `fault` set: as measure_worst_case.
+[[nodiscard]] std::optional<WorstCaseMeasurement> measure_slowest(
+    const CudaOptions& options, std::vector<WorstCaseCycle> cycles, std::uint32_t count,
+    std::string& fault);
 
 }  // namespace axg

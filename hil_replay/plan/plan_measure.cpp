@@ -248,10 +248,11 @@ bool measure_longest(const LoadedMachine& loaded, const ModelScene& scene, const
                      ModelMeasurement& out, std::string& fault) {
     CudaOptions options;
     options.multiprocessors = scene.multiprocessors;
-    WorstCaseCycle cycle = longest_gpu_cycle(loaded.machine.capacities,
-                                             cycle_demand(loaded.machine, true), gpu.tree_levels());
-    cycle.count = kWorstCaseCycles;
-    const auto worst_case = measure_worst_case(options, cycle, fault);
+    const auto worst_case =
+        measure_slowest(options,
+                        longest_gpu_cycles(loaded.machine.capacities,
+                                           cycle_demand(loaded.machine, true), gpu.tree_levels()),
+                        kWorstCaseCycles, fault);
     out.longest_us = worst_case ? worst_case->us_max : 0;
     return worst_case.has_value();
 }

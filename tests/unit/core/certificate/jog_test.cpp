@@ -245,8 +245,20 @@ class JogCertificateTest : public testing::Test {
         snapshot.tool = 1;
     }
 
-    /// One cycle with the tip so far above the plate.
+    /// One cycle with the tip so far above the plate; where a jog begins, the one before it too.
     CycleResult cycle(double gap_mm, JogMove jog = {}, bool ready = true) {
+        const bool begins = jog.axis != kNoIndex && (snapshot.sample == 0 || !(jog == move));
+        if (begins) {
+            const CycleResult first = one_cycle(gap_mm, jog, ready);
+            EXPECT_FALSE(first.has_permit);
+            if (first.is_stop) {
+                return first;
+            }
+        }
+        return one_cycle(gap_mm, jog, ready);
+    }
+    CycleResult one_cycle(double gap_mm, JogMove jog, bool ready = true) {
+        move = jog;
         ++snapshot.sample;
         snapshot.mode = kModeStandstill;
         snapshot.flags = 0;
@@ -268,6 +280,7 @@ class JogCertificateTest : public testing::Test {
     Engine engine = scene.engine().engine();
     std::optional<StopCertificate> certificate;
     AxisSnapshot snapshot;
+    JogMove move{};
     bool was_permitted = false;  // and so armed
     StopReason reason = StopReason::none;
 };
@@ -431,7 +444,9 @@ TEST_F(JogCertificateTest, JogsBackAndForthLoseNothing) {
 TEST_F(JogCertificateTest, AMachineThatAPersonFreedBeginsAnew) {
     ASSERT_TRUE(cycle(0.3, kUp).has_permit);
     const double floor_mm = certificate->tasks()[0].margin_mm;
-    EXPECT_FALSE(cycle(0.15).has_permit) << "moved by hand";
+    for (double gap = 0.3; gap > 0.15; gap -= 0.001) {
+        EXPECT_FALSE(cycle(gap).has_permit) << "moved by hand";
+    }
     EXPECT_TRUE(cycle(0.15, kUp).has_permit);
     EXPECT_LT(certificate->tasks()[0].margin_mm, floor_mm);
 }
@@ -497,6 +512,42 @@ TEST_F(JogCertificateTest, ALadderIsAskedOfPairsWithinTheirMarginAlone) {
     EXPECT_EQ(count.calls, 2U);
     EXPECT_EQ(count.queries, 2 + kJogRungs - 1) << "and the rungs of one";
     EXPECT_EQ(count.groups, 1U) << "which is a group";
+}
+
+// What finds the floors takes as long as a proof: it is the whole of that cycle, which is neither a
+// permit nor a stop.
+TEST_F(JogCertificateTest, WhereAJogBeginsNothingIsProven) {
+    LadderCount count{&scene.engine()};
+    engine = {.self = &count, .run = LadderCount::run, .run_groups = LadderCount::run_groups};
+    ASSERT_TRUE(cycle(3).is_stop || !was_permitted);
+    for (const JogMove& jog : {kUp, kDown, kUp}) {
+        count = {&scene.engine()};
+        const CycleResult first = one_cycle(3, jog);
+        EXPECT_FALSE(first.has_permit || first.is_stop);
+        EXPECT_EQ(first.reason, StopReason::none);
+        EXPECT_TRUE(certificate->cycle().begins_jog);
+        EXPECT_FALSE(certificate->cycle().is_settled) << "no permit is missed";
+        EXPECT_TRUE(certificate->cycle().proofs.empty());
+        EXPECT_EQ(certificate->work().queries, 0U) << "the known-answer test alone";
+        EXPECT_EQ(certificate->containment_tests(), 0U);
+        EXPECT_EQ(count.calls, 1U);
+        certificate->prove(engine, scene.containment_test());
+        EXPECT_TRUE(certificate->cycle().begins_jog) << "the same for the same snapshot";
+        EXPECT_EQ(count.calls, 2U);
+        const CycleResult second = one_cycle(3, jog);
+        EXPECT_TRUE(second.has_permit && second.is_jog);
+        EXPECT_EQ(count.calls, 2U) << "the floors are known";
+        EXPECT_FALSE(certificate->cycle().begins_jog);
+    }
+}
+
+// Where the floors are not found, it counts as any motion that is not proven.
+TEST_F(JogCertificateTest, WhereNoFloorIsFoundItIsNotProven) {
+    EngineWithoutLadder without{&scene.engine(), false};
+    engine = {&without, EngineWithoutLadder::run};
+    const CycleResult first = one_cycle(1, kUp);
+    EXPECT_FALSE(certificate->cycle().begins_jog);
+    EXPECT_EQ(first.reason, StopReason::predicted);
 }
 
 TEST_F(JogCertificateTest, OutOfAContactNothingIsPermitted) {

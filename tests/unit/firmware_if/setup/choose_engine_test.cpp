@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/certificate/jog.hpp"
 #include "core/certificate/stop_certificate.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
 
@@ -42,29 +41,21 @@ TEST_F(ChooseEngine, TheWordGoesBeforeTheMachineFile) {
     EXPECT_EQ(engine_choice("cuda", machine), EngineChoice::cuda);
 }
 
-// Of the plan's stages, and where a jog begins of its ladders: each call with all lists.
-TEST_F(ChooseEngine, NoCycleTakesMoreLaunches) {
+TEST_F(ChooseEngine, ACycleDemandsWhatThePlanAndTheMachineSay) {
     Machine machine = loaded_.machine;
-    machine.guard.jog.is_promised = false;
-    const std::uint32_t tasks = stop_tasks(machine);
-    ASSERT_LT(tasks, 100U);
-    for (const std::uint32_t queries : {510U, 512U, 513U, 1021U}) {
-        machine.plan = plan_of(2, tasks, queries, {512, 512, 2048, 4096, 0});
-        const CycleDemand demand = cycle_demand(machine, true);
-        EXPECT_EQ(demand.calls, 2U);
-        EXPECT_EQ(demand.queries, queries + 2);
-        EXPECT_EQ(demand.launches, queries <= 512 ? 1U : queries <= 1026 ? 2U : 3U);
-        EXPECT_EQ(demand.plan, machine.plan);
+    machine.plan = plan_of(3, stop_tasks(machine), 64, {512, 384, 2048, 3072, 0});
+    for (const bool has_jogs : {false, true}) {
+        for (const PermitSamples samples : {PermitSamples{3, 3}, PermitSamples{3, 12}}) {
+            machine.guard.jog.is_promised = has_jogs;
+            machine.can.permit_samples = samples;
+            const CycleDemand demand = cycle_demand(machine, true);
+            EXPECT_EQ(demand.plan, machine.plan);
+            EXPECT_EQ(demand.tasks, stop_tasks(machine));
+            EXPECT_EQ(demand.has_jogs, has_jogs);
+            EXPECT_EQ(demand.asks_twice, samples.most > samples.least);
+            EXPECT_FALSE(cycle_demand(machine, false).plan);
+        }
     }
-    machine.plan = plan_of(3, tasks, 64, {512, 384, 2048, 3072, 0});
-    EXPECT_EQ(cycle_demand(machine, true).calls, 3U);
-    EXPECT_EQ(cycle_demand(machine, true).queries, 64U + 2);
-    machine.guard.jog.is_promised = true;
-    EXPECT_EQ(cycle_demand(machine, true).calls, 5U);
-    EXPECT_EQ(cycle_demand(machine, true).queries, kJogLaddersMax * (kJogRungs - 1) + 2);
-    EXPECT_EQ(cycle_demand(machine, true).launches, 1U);
-    EXPECT_EQ(cycle_demand(machine, false).calls, 1U);
-    EXPECT_EQ(cycle_demand(machine, false).launches, 1U);
 }
 
 TEST_F(ChooseEngine, TheCpuIsNotMeasured) {

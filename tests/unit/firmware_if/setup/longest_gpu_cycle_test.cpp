@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Of which calls the longest cycle on a GPU consists: each stage with its own lists full, a jog's
-// calls with the longest of any stage, in contact mode one batch. No GPU is needed.
+// Of which calls the longest cycles on a GPU consist: each stage with its own lists full, where a
+// jog begins its ladders in their place, in contact mode one batch. No GPU is needed.
 #include "firmware_if/setup/longest_gpu_cycle.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include "core/certificate/jog.hpp"
 #include "core/certificate/stop_certificate.hpp"
 #include "core/worst_case/worst_case_batch.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
@@ -22,9 +23,10 @@ class LongestGpuCycle : public ::testing::Test {
         ASSERT_TRUE(
             load(AXG_SOURCE_DIR "/config/machines/paper-trunnion.yaml", "", loaded_, stderr));
     }
-    [[nodiscard]] WorstCaseCycle cycle(bool is_stoppable) const {
-        return longest_gpu_cycle(loaded_.machine.capacities,
-                                 cycle_demand(loaded_.machine, is_stoppable), kLevels);
+    [[nodiscard]] std::vector<WorstCaseCycle> cycles(bool is_stoppable,
+                                                     std::uint32_t levels = kLevels) const {
+        return longest_gpu_cycles(loaded_.machine.capacities,
+                                  cycle_demand(loaded_.machine, is_stoppable), levels);
     }
 
     LoadedMachine loaded_;
@@ -43,37 +45,75 @@ void expect_no_less(const WorstCaseCall& call, const WorkLists& lists) {
 
 TEST_F(LongestGpuCycle, EveryStageIsFullOneBehindTheOther) {
     loaded_.machine.guard.jog.is_promised = false;
+    loaded_.machine.can.permit_samples = {3, 3};
     for (const std::uint32_t stages : {1U, 2U, 3U}) {
         loaded_.machine.cycle.stages = stages;
         const CycleDemand demand = cycle_demand(loaded_.machine, true);
-        const WorstCaseCycle made = cycle(true);
-        EXPECT_EQ(made.tree_levels, kLevels);
-        ASSERT_EQ(made.calls.size(), stages);
-        EXPECT_EQ(launches_of(made), stages);
+        const std::vector<WorstCaseCycle> made = cycles(true);
+        ASSERT_EQ(made.size(), 1U);
+        EXPECT_EQ(made[0].tree_levels, kLevels);
+        ASSERT_EQ(made[0].calls.size(), stages);
+        EXPECT_EQ(launches_of(made[0]), stages);
         for (std::uint32_t stage = 0; stage < stages; ++stage) {
-            expect_no_less(made.calls[stage], demand.plan->lists[stage]);
-            EXPECT_EQ(made.calls[stage].queries,
+            expect_no_less(made[0].calls[stage], demand.plan->lists[stage]);
+            EXPECT_EQ(made[0].calls[stage].queries,
                       2 + (stage == 0 ? demand.tasks : demand.plan->queries[stage]));
         }
     }
 }
 
-// A mean of the stages would be no bound: a ladder may fill what any stage may.
-TEST_F(LongestGpuCycle, AJogsCallsHaveTheLongestListsOfAnyStage) {
-    loaded_.machine.guard.jog.is_promised = true;
+// What is asked of the longer permit may use as much again (first_share_of).
+TEST_F(LongestGpuCycle, TheFirstStageMayAskTwice) {
+    loaded_.machine.can.permit_samples = {3, 12};
     const CycleDemand demand = cycle_demand(loaded_.machine, true);
-    const WorstCaseCycle made = cycle(true);
-    ASSERT_EQ(made.calls.size(), demand.plan->stages + 1);
-    EXPECT_EQ(made.calls.back().times, 2U);
-    EXPECT_EQ(made.calls.back().queries, demand.queries);
-    for (std::uint32_t stage = 0; stage < demand.plan->stages; ++stage) {
-        expect_no_less(made.calls.back(), demand.plan->lists[stage]);
+    ASSERT_TRUE(demand.asks_twice);
+    const WorkLists& lists = demand.plan->lists[0];
+    const WorstCaseCall& first = cycles(true)[0].calls[0];
+    EXPECT_EQ(first.queries, 2 * demand.tasks + 2);
+    expect_no_less(first, {2 * lists.node_pairs, 2 * lists.leaf_pairs, 2 * lists.box_rows,
+                           2 * lists.triangle_pairs, 2 * lists.rechecks});
+}
+
+// The snapshot where a jog begins is proven nothing of: its ladders take the stages' place.
+TEST_F(LongestGpuCycle, AJogsLaddersAreACycleOfTheirOwn) {
+    loaded_.machine.guard.jog.is_promised = true;
+    for (const std::uint32_t stages : {1U, 2U, 3U}) {
+        loaded_.machine.cycle.stages = stages;
+        const CycleDemand demand = cycle_demand(loaded_.machine, true);
+        const std::vector<WorstCaseCycle> made = cycles(true);
+        ASSERT_EQ(made.size(), 2U);
+        EXPECT_EQ(made[0].calls.size(), stages);
+        ASSERT_EQ(made[1].calls.size(), 3U) << "margins, rungs, known-answer test";
+        EXPECT_EQ(launches_of(made[1]), 3U);
+        const JogLists lists = jog_lists(*demand.plan);
+        expect_no_less(made[1].calls[0], lists.margins);
+        expect_no_less(made[1].calls[1], lists.rungs);
+        EXPECT_EQ(made[1].calls[0].queries, demand.tasks);
+        EXPECT_EQ(made[1].calls[1].queries,
+                  std::min(demand.tasks, jog_ladders(*demand.plan)) * (kJogRungs - 1));
     }
-    EXPECT_EQ(launches_of(made), demand.calls);
+}
+
+// So what a thread does where a jog begins is within what it does in the longest cycle of the plan.
+TEST_F(LongestGpuCycle, AJogMayUseNoMoreThanAPlan) {
+    for (const std::uint32_t stages : {1U, 2U, 3U}) {
+        for (const std::uint32_t queries : {15U, 16U, 64U, 512U, 1024U}) {
+            const CyclePlan plan = plan_of(stages, 8, queries, {512, 384, 2048, 3072, 64});
+            const WorkLists all = lists_of(plan);
+            const auto [margins, rungs] = jog_lists(plan);
+            EXPECT_LE(margins.node_pairs + rungs.node_pairs, all.node_pairs);
+            EXPECT_LE(margins.leaf_pairs + rungs.leaf_pairs, all.leaf_pairs);
+            EXPECT_LE(margins.box_rows + rungs.box_rows, all.box_rows);
+            EXPECT_LE(margins.triangle_pairs + rungs.triangle_pairs, all.triangle_pairs);
+            EXPECT_LE(margins.rechecks + rungs.rechecks, all.rechecks);
+            EXPECT_LE(jog_ladders(plan) * (kJogRungs - 1), plan.queries[stages - 1]);
+            EXPECT_GE(jog_ladders(plan), 1U);
+        }
+    }
 }
 
 TEST_F(LongestGpuCycle, InContactModeItIsOneBatchOfTheFilesLists) {
-    const WorstCaseCycle made = cycle(false);
+    const WorstCaseCycle made = cycles(false).front();
     ASSERT_EQ(made.calls.size(), 1U);
     EXPECT_FALSE(made.calls[0].is_stage);
     const BatchCapacities &found = made.calls[0].capacities.batch,
@@ -87,7 +127,7 @@ TEST_F(LongestGpuCycle, InContactModeItIsOneBatchOfTheFilesLists) {
 TEST_F(LongestGpuCycle, MoreQueriesThanALaunchTakesAreMoreLaunches) {
     loaded_.machine.guard.jog.is_promised = false;
     loaded_.machine.plan = plan_of(2, stop_tasks(loaded_.machine), 1024, {512, 512, 4096, 4096, 0});
-    const WorstCaseCycle made = cycle(true);
+    const WorstCaseCycle made = cycles(true).front();
     ASSERT_EQ(made.calls.size(), 2U);
     EXPECT_EQ(made.calls[1].times, 2U);
     EXPECT_EQ(made.calls[1].queries, CudaOptions{}.queries_max);
@@ -97,14 +137,15 @@ TEST_F(LongestGpuCycle, MoreQueriesThanALaunchTakesAreMoreLaunches) {
 TEST_F(LongestGpuCycle, EveryCallCanBeFilled) {
     loaded_.machine.guard.jog.is_promised = true;
     for (const std::uint32_t levels : {1U, 2U, 3U}) {
-        const WorstCaseCycle made = longest_gpu_cycle(loaded_.machine.capacities,
-                                                      cycle_demand(loaded_.machine, true), levels);
-        for (const WorstCaseCall& call : made.calls) {
-            for (const WorstCaseLayout layout : kWorstCaseLayouts) {
-                WorstCaseBatch batch;
-                EXPECT_EQ(
-                    make_worst_case_batch(call.capacities, call.queries, levels, layout, batch), "")
-                    << levels << " levels, " << call.queries << " queries, " << name_of(layout);
+        for (const WorstCaseCycle& made : cycles(true, levels)) {
+            for (const WorstCaseCall& call : made.calls) {
+                for (const WorstCaseLayout layout : kWorstCaseLayouts) {
+                    WorstCaseBatch batch;
+                    EXPECT_EQ(
+                        make_worst_case_batch(call.capacities, call.queries, levels, layout, batch),
+                        "")
+                        << levels << " levels, " << call.queries << " queries, " << name_of(layout);
+                }
             }
         }
     }

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whole certificates over both engines, at random places of the travel and near contact, at random
+// speeds: with lists that are long enough every pair is decided alike; where they are short, what
+// the GPU proves the CPU proves too. AXG_COUNT: certificates of each kind; AXG_SEED: which.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <optional>
+#include <random>
+
+#include "core/certificate/stop_certificate.hpp"
+#include "firmware_if/setup/guard_engine.hpp"
+#include "firmware_if/setup/travel_sample.hpp"
+#include "tests/support/count.hpp"
+#include "tests/support/cuda_fixture.hpp"
+#include "tests/support/replay_fixture.hpp"
+#include "tests/support/seed.hpp"
+
+namespace axg {
+namespace {
+
+struct Tally {
+    std::uint64_t both = 0, neither = 0, cpu_alone = 0, gpu_alone = 0, stages = 0;
+};
+
+class CudaCertificate : public testing::Test {
+  protected:
+    /// Two snapshots, the fewest that anything is proven of: half of the first ones anywhere, the
+    /// others a little off the last place where something was not proven.
+    void draw(std::mt19937_64& random) {
+        const Machine& machine = paper.loaded.machine;
+        const auto between = [&random](double low, double high) {
+            return low + (high - low) * static_cast<double>(random() >> 11U) * 0x1p-53;
+        };
+        const bool stays_near = has_near && random() % 4 != 0;
+        before =
+            stays_near ? near : sampled_position(machine, static_cast<std::uint32_t>(random()));
+        before.tool = machine.first_tool;
+        before.sample = 2 * ++number;
+        const double speed = between(0, 1) * between(0, 0.95);
+        now = before;
+        now.sample = before.sample + 1;
+        for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+            const Axis& axis = machine.axes[i];
+            const double off = stays_near ? 0.002 * (axis.max - axis.min) * between(-1, 1) : 0;
+            const double step =
+                between(-1, 1) * speed * axis.speed_max * machine.can.sample_us * 1e-6;
+            const auto kept = [&axis](double at) {
+                return axis.unlimited ? at : std::min(std::max(at, axis.min), axis.max);
+            };
+            before.position[i] = kept(before.position[i] + off);
+            now.position[i] = kept(before.position[i] + step);
+        }
+    }
+    void prove(StopCertificate& certificate, const Engine& engine) const {
+        certificate.note(before, true);
+        certificate.note(now, false);
+        certificate.prove(engine, *paper.containment_test);
+        certificate.keep();
+    }
+    /// Of `count` certificates with the machine's plan, pair by pair.
+    Tally compare(CudaEngine& gpu, std::uint64_t count, std::uint64_t seed) {
+        std::optional<StopCertificate> on_cpu = make_stop_certificate(paper.loaded),
+                                       on_gpu = make_stop_certificate(paper.loaded);
+        std::mt19937_64 random(seed);
+        Tally tally;
+        for (std::uint64_t i = 0; i < count && gpu.fault() == nullptr; ++i) {
+            draw(random);
+            prove(*on_cpu, paper.engine->engine());
+            prove(*on_gpu, gpu.engine());
+            const StopCycle cpu = on_cpu->cycle(), other = on_gpu->cycle();
+            EXPECT_EQ(cpu.known_answer_signature, other.known_answer_signature);
+            EXPECT_EQ(cpu.proofs.size(), other.proofs.size());
+            for (std::size_t k = 0; k < cpu.proofs.size(); ++k) {
+                const bool is_on_cpu = is_proven(cpu.proofs[k]),
+                           is_on_gpu = is_proven(other.proofs[k]);
+                ++(is_on_cpu   ? is_on_gpu ? tally.both : tally.cpu_alone
+                   : is_on_gpu ? tally.gpu_alone
+                               : tally.neither);
+                if (!is_on_cpu) {
+                    near = now;
+                    has_near = true;
+                }
+            }
+            tally.stages += on_gpu->work().stages;
+        }
+        EXPECT_EQ(gpu.fault(), nullptr) << gpu.fault();
+        return tally;
+    }
+    static bool is_proven(const PairProof& proof) {
+        return proof.surfaces.proof == JointBoxProof::proven &&
+               proof.containment_result.containment == Containment::none;
+    }
+    void print(const char* what, std::uint64_t count, std::uint64_t seed, const Tally& tally) {
+        std::printf(
+            "%s: %llu certificates (seed %llu), %.2f stages each; pairs proven by both %llu, by "
+            "neither %llu, by the CPU alone %llu, by the GPU alone %llu\n",
+            what, static_cast<unsigned long long>(count), static_cast<unsigned long long>(seed),
+            static_cast<double>(tally.stages) / static_cast<double>(count),
+            static_cast<unsigned long long>(tally.both),
+            static_cast<unsigned long long>(tally.neither),
+            static_cast<unsigned long long>(tally.cpu_alone),
+            static_cast<unsigned long long>(tally.gpu_alone));
+    }
+
+    test::PaperMachine paper;
+    AxisSnapshot before, now, near;
+    bool has_near = false;
+    std::uint64_t number = 0;
+};
+
+#define AXG_GPU_OR_SKIP(name)                                                         \
+    std::string name##_fault;                                                         \
+    std::optional<CudaEngine> name =                                                  \
+        make_gpu_engine(paper.loaded, name##_fault, test::number_from("AXG_SMS", 0)); \
+    if (!name) {                                                                      \
+        GTEST_SKIP() << name##_fault;                                                 \
+    }
+
+TEST_F(CudaCertificate, WithLongListsEveryPairIsDecidedAlike) {
+    paper.loaded.machine.cycle.lists = {1U << 16U, 1U << 16U, 1U << 20U, 1U << 20U, 0};
+    AXG_GPU_OR_SKIP(gpu);
+    const std::uint64_t count = test::count_from_environment(4000),
+                        seed = test::printed_seed(20261128);
+    const Tally tally = compare(*gpu, count, seed);
+    print("long lists", count, seed, tally);
+    EXPECT_EQ(tally.cpu_alone, 0U);
+    EXPECT_EQ(tally.gpu_alone, 0U);
+    EXPECT_GT(20 * tally.neither, count) << "near contact often enough";
+    EXPECT_GT(tally.both, count);
+}
+
+// In two stages that is a theorem (docs/theory/certificate.md, "Stages and groups").
+TEST_F(CudaCertificate, WithShortListsTheCpuProvesWhatTheGpuProves) {
+    paper.loaded.machine.cycle.stages = 2;
+    AXG_GPU_OR_SKIP(gpu);
+    const std::uint64_t count = test::count_from_environment(4000),
+                        seed = test::printed_seed(20261129);
+    const Tally tally = compare(*gpu, count, seed);
+    print("the usual lists in two stages", count, seed, tally);
+    EXPECT_EQ(tally.gpu_alone, 0U);
+    EXPECT_GT(tally.cpu_alone, 0U) << "lists are short enough to be noticed";
+}
+
+}  // namespace
+}  // namespace axg
