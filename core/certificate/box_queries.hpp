@@ -27,6 +27,8 @@ class BoxQueries {
     BoxQueries(const Machine& machine, std::size_t tasks, bool are_float_only,
                Arena& arena) noexcept;
 
+    [[nodiscard]] bool are_float_only() const noexcept { return are_float_only_; }
+
     /// Starts over: the whole boxes that have to be queried, with their levers. The results of the
     /// others say why not; those of these say `proven`, until a part is left unproven.
     /// @return  how many, at most one a task

@@ -124,6 +124,7 @@ bool StagedProver::run(const Engine& engine, StagedWork& work) noexcept {
     for (std::uint32_t i = query_count_; i < all; ++i) {
         queries_[i] = known_answer_query(known_answer_mesh_, i != query_count_);
         queries_[i].group = static_cast<std::uint16_t>(group_count_);
+        queries_[i].is_float_only = boxes_->are_float_only();
     }
     groups_[group_count_] = {.share = kKnownAnswerShare};
     std::fill_n(results_.begin(), all, QueryResult{});  // an engine that is silent proves nothing

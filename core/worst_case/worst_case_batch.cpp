@@ -216,11 +216,19 @@ std::string make_worst_case_batch(const Capacities& capacities, std::uint32_t qu
                                   WorstCaseBatch& out) {
     out = {};
     out.bodies.tree_levels = tree_levels;
+    std::string fault;
     if (layout == WorstCaseLayout::overflowing) {
         overflow(queries, tree_levels, out);
-        return {};
+    } else {
+        fault = fill_exactly(capacities, queries, tree_levels, layout, out);
     }
-    return fill_exactly(capacities, queries, tree_levels, layout, out);
+    for (Query& query : out.queries) {
+        if (capacities.batch.rechecks == 0) {  // as a plan without rechecks queries
+            query.kind = QueryKind::farther;
+            query.is_float_only = true;
+        }
+    }
+    return fault;
 }
 
 }  // namespace axg

@@ -220,7 +220,9 @@ cudaError_t launch_batch(const DeviceBuffers& b, const Launch& launch, LaunchLea
     if (measures) {
         next(launch_measure_leaves(b, launch));
     }
-    next(launch_recheck_pairs(b, launch));
+    if (b.limits.has_rechecks) {
+        next(launch_recheck_pairs(b, launch));
+    }
     if (measures) {
         next(launch_refine_distances(b, launch, 0));
         next(launch_refine_distances(b, launch, 1));
@@ -262,6 +264,9 @@ void warm_up(CudaEngine& engine) {
     engine.run({&query, 1}, {&result, 1});
     GroupWork group{.share = kKnownAnswerShare};
     engine.run({&query, 1}, {&result, 1}, {&group, 1});
+    query.is_float_only = true;
+    engine.run({&query, 1}, {&result, 1}, {&group, 1});
+    query.is_float_only = false;
     query.kind = QueryKind::clearance;
     engine.run({&query, 1}, {&result, 1});
 }
@@ -302,6 +307,8 @@ std::optional<CudaEngine> CudaEngine::Parts::engine_over(const TreeBodies& bodie
     parts->buffers.limits = limits_of(capacities, options, bodies);
     parts->clearance_limits = clearance_limits_of(parts->buffers.limits, options);
     parts->stage_limits = stage_limits_of(parts->buffers.limits, parts->clearance_limits);
+    parts->float_stage_limits = parts->stage_limits;
+    parts->float_stage_limits.has_rechecks = false;
     parts->groups_here.reserve(parts->buffers.limits.queries);
     parts->place_of_group.assign(kGroupsMax, kNoGroup);
     if (!reserve(*parts, trees, fault) || !sum_trees(*parts, trees, fault) ||
@@ -309,7 +316,9 @@ std::optional<CudaEngine> CudaEngine::Parts::engine_over(const TreeBodies& bodie
         failed(cudaDeviceSynchronize(), "filling the memory", fault) ||
         !record(*parts, parts->buffers.limits, options.launch_leaves, parts->proofs, fault) ||
         !record(*parts, parts->clearance_limits, options.launch_leaves, parts->clearances, fault) ||
-        !record(*parts, parts->stage_limits, options.launch_leaves, parts->stages, fault)) {
+        !record(*parts, parts->stage_limits, options.launch_leaves, parts->stages, fault) ||
+        !record(*parts, parts->float_stage_limits, options.launch_leaves, parts->float_stages,
+                fault)) {
         return std::nullopt;
     }
     // The first launch of a kernel loads it: every kernel runs once before the first cycle.

@@ -109,12 +109,13 @@ bool run_batch(CudaEngine::Parts& parts, std::span<const Query> queries,
     const Clock::time_point deadline = Clock::now() + std::chrono::microseconds(parts.deadline_us);
     const DeviceLimits& limits = parts.buffers.limits;
     const std::uint32_t sequence = ++parts.sequence;
-    bool measures = false;
-    for (std::size_t i = 0; i < queries.size(); ++i) {
-        measures = measures || queries[i].kind == QueryKind::clearance;
-        parts.queries[i] = queries[i];
-    }
     const bool is_stage = !groups.empty();
+    bool measures = false, has_rechecks = false;
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+        const Query& query = parts.queries[i] = queries[i];
+        measures = measures || query.kind == QueryKind::clearance;
+        has_rechecks = has_rechecks || !query.is_float_only || query.kind != QueryKind::farther;
+    }
     parts.groups_here.clear();
     if (is_stage) {
         place_groups(parts, queries.size(), groups);
@@ -125,7 +126,10 @@ bool run_batch(CudaEngine::Parts& parts, std::span<const Query> queries,
     std::memset(static_cast<void*>(parts.groups_out), kPoison,
                 parts.groups_here.size() * sizeof(DeviceGroupResult));
     std::atomic_thread_fence(std::memory_order_seq_cst);
-    const BatchGraph& batch = is_stage ? parts.stages : measures ? parts.clearances : parts.proofs;
+    const BatchGraph& batch = is_stage && !has_rechecks ? parts.float_stages
+                              : is_stage                ? parts.stages
+                              : measures                ? parts.clearances
+                                                        : parts.proofs;
     if (cudaGraphLaunch(batch.exec, parts.partition.stream) != cudaSuccess) {
         parts.give_up("the GPU refused a batch");
         return false;
@@ -163,7 +167,8 @@ CudaEngine::~CudaEngine() {
     // What a kernel still writes behind its last result must be there: freeing waits for the
     // device, not for a partition of it.
     static_cast<void>(cudaStreamSynchronize(parts_->partition.stream));
-    for (const cuda::BatchGraph& batch : {parts_->proofs, parts_->clearances, parts_->stages}) {
+    for (const cuda::BatchGraph& batch :
+         {parts_->proofs, parts_->clearances, parts_->stages, parts_->float_stages}) {
         static_cast<void>(cudaGraphExecDestroy(batch.exec));
         static_cast<void>(cudaGraphDestroy(batch.graph));
     }

@@ -168,6 +168,7 @@ struct DeviceLimits {
     std::uint32_t batch_triangle_pairs = 0, batch_rechecks = 0;
     bool measures = false;          // a batch with a clearance query
     bool is_stage = false;          // queries in groups: what each may use, and nothing else
+    bool has_rechecks = true;       // else no query is tested in double
     std::uint32_t listed = 0;       // a query: touching pairs told by name
     std::uint32_t tree_levels = 0;  // of pairs of nodes to open
     std::uint32_t meshes = 0;

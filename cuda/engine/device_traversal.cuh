@@ -228,7 +228,8 @@ __device__ __forceinline__ bool charge(GroupSums& group, WorkListPlace list, std
     return fits;
 }
 
-/// Whether a query's group was lost at `loss` or before it; false in a batch without groups.
+/// Whether a query's group was lost at `loss` or before it; false in a batch without groups. While
+/// a kernel runs two threads may read different answers, so whoever branches on it asks together.
 __device__ __forceinline__ bool is_lost(const DeviceBuffers& b, const PreparedQuery& q,
                                         std::uint32_t loss) {
     return b.limits.is_stage &&

@@ -56,7 +56,8 @@ struct CudaEngine::Parts {
     std::byte* pinned_memory = nullptr;
     cuda::DeviceBuffers buffers;          // addresses as the device sees them
     cuda::DeviceLimits clearance_limits;  // of a batch with a clearance query
-    cuda::DeviceLimits stage_limits;      // of one whose queries are in groups
+    // Of one whose queries are in groups, and where none of them is ever tested in double.
+    cuda::DeviceLimits stage_limits, float_stage_limits;
     // The same pinned memory as the host sees it.
     cuda::BatchHead* head = nullptr;
     Query* queries = nullptr;
@@ -64,8 +65,8 @@ struct CudaEngine::Parts {
     TriangleIds* listed = nullptr;
     GroupSums* groups_in = nullptr;
     cuda::DeviceGroupResult* groups_out = nullptr;
-    // Without and with the kernels that clearance needs; and in groups.
-    cuda::BatchGraph proofs, clearances, stages;
+    // Without and with the kernels that clearance needs; in groups, with and without rechecks.
+    cuda::BatchGraph proofs, clearances, stages, float_stages;
     std::uint32_t sequence = 0;  // of the last batch
     // Groups of a launch: which of the call's, and which of the launch's each of those is.
     std::vector<std::uint16_t> groups_here, place_of_group;

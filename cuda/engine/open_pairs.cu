@@ -227,8 +227,12 @@ __device__ std::uint32_t open(const DeviceBuffers& buffers, const PairEntry& at,
     const bool leaf_a = is_leaf(o.a), leaf_b = is_leaf(o.b),
                measures = q.kind == QueryKind::clearance;
     const double bound = tally.bound_mm;
-    if (is_lost(buffers, q, loss_of_rows(tree_level)) ||
-        is_over(tally, tree_level, buffers.limits.node_pairs) ||
+    // Other blocks lose groups meanwhile: all threads of this one have to see the same.
+    if (buffers.limits.is_stage &&
+        __syncthreads_or(is_lost(buffers, q, loss_of_rows(tree_level)) ? 1 : 0) != 0) {
+        return 0;
+    }
+    if (is_over(tally, tree_level, buffers.limits.node_pairs) ||
         (measures && !(at.low_mm < bound))) {
         return 0;
     }

@@ -373,8 +373,8 @@ __device__ bool take(const DeviceBuffers& b, std::uint32_t i, std::uint32_t coun
         tile.at = at;
         ++tile.handled;
     }
-    __syncwarp();
-    return !is_lost(b, b.prepared[at.query], kLossOfClipping) &&
+    // Other warps lose groups meanwhile: all lanes of this one have to see the same.
+    return ballot(is_lost(b, b.prepared[at.query], kLossOfClipping)) == 0 &&
            !is_over(b.tallies[at.query], kTreeLevelsMax - 1, b.limits.node_pairs);
 }
 

@@ -33,19 +33,32 @@ CudaOptions few_queries() {
     return options;
 }
 
+enum class BatchKind : std::uint8_t { proofs, clearances, stages, float_stages };
+constexpr const char* kNames[] = {"proofs", "clearances", "stages", "stages in float"};
+
 struct Batch {
     std::vector<Query> queries{kBatch};
     std::vector<QueryResult> wanted{kBatch}, found{kBatch};
+    bool is_stage = false;
 
-    void draw(test::Draw& draw, std::uint32_t mesh_count, CpuEngine& cpu, bool measures = true) {
+    void draw(test::Draw& draw, std::uint32_t mesh_count, CpuEngine& cpu,
+              BatchKind kind = BatchKind::clearances) {
+        const bool is_float = kind == BatchKind::float_stages;
         for (Query& q : queries) {
             q = test::random_query(draw, mesh_count);
-            if (!measures && q.kind == QueryKind::clearance) {
+            if (is_float || (kind != BatchKind::clearances && q.kind == QueryKind::clearance)) {
+                q.r_mm = q.kind == QueryKind::farther ? q.r_mm : 0;
                 q.kind = QueryKind::farther;
-                q.r_mm = 0;
             }
+            q.is_float_only = is_float;
         }
+        is_stage = is_float || kind == BatchKind::stages;
         cpu.run(queries, wanted);
+    }
+    void run(CudaEngine& gpu) {
+        constexpr std::uint32_t kAmple = 1U << 30U;
+        GroupWork group{.share = {kAmple, kAmple, kAmple, kAmple, kAmple}};
+        gpu.run(queries, found, {&group, is_stage ? 1U : 0U});
     }
     /// Results that claim more than the CPU engine proves; 0 is what every fault must leave.
     [[nodiscard]] int wrong_claims() const {
@@ -88,31 +101,34 @@ TEST(CudaFault, AKernelLeftOut) {
     ASSERT_TRUE(cpu);
     CudaEngine::Parts& parts = gpu.parts();
     const auto mesh_count = static_cast<std::uint32_t>(meshes.size());
-    // Drawn and run by the CPU once, queried over and over: its time is not what is tested.
-    std::vector<Batch> whole(kPool),
-        broken[2] = {std::vector<Batch>(kPool), std::vector<Batch>(kPool)};
-    for (std::uint32_t i = 0; i < kPool; ++i) {
-        whole[i].draw(draw, mesh_count, *cpu);
-        broken[0][i].draw(draw, mesh_count, *cpu, false);
-        broken[1][i].draw(draw, mesh_count, *cpu);
-    }
-    for (const cuda::BatchGraph& graph : {parts.proofs, parts.clearances}) {
+    const cuda::BatchGraph graphs[] = {parts.proofs, parts.clearances, parts.stages,
+                                       parts.float_stages};
+    for (std::size_t kind = 0; kind < std::size(graphs); ++kind) {
+        // Drawn and run by the CPU once, queried over and over: its time is not what is tested.
+        // What runs whole has the kernels that are left out later.
+        std::vector<Batch> whole(kPool), broken(kPool);
+        for (std::uint32_t i = 0; i < kPool; ++i) {
+            const bool is_stage = kind >= 2;
+            whole[i].draw(draw, mesh_count, *cpu,
+                          is_stage ? static_cast<BatchKind>(kind) : BatchKind::clearances);
+            broken[i].draw(draw, mesh_count, *cpu, static_cast<BatchKind>(kind));
+        }
+        const cuda::BatchGraph& graph = graphs[kind];
         const std::vector<cudaGraphNode_t> nodes = nodes_of(graph.graph);
-        ASSERT_GE(nodes.size(), 5U);
-        const bool measures = graph.exec == parts.clearances.exec;
+        ASSERT_GE(nodes.size(), kind == 3 ? 4U : 5U);
         for (std::size_t n = 0; n < nodes.size(); ++n) {
             std::uint32_t dead = 0, differing = 0;
             const std::uint32_t count = fault_count();
             for (std::uint32_t i = 0; i < count; ++i) {
                 Batch& before = whole[draw.below(kPool)];
-                gpu.run(before.queries, before.found);  // leaves everything as after work
+                before.run(gpu);  // leaves everything as after work
                 ASSERT_EQ(gpu.fault(), nullptr) << gpu.fault();
                 ASSERT_EQ(before.wrong_claims(), 0);
-                Batch& batch = broken[measures ? 1 : 0][draw.below(kPool)];
+                Batch& batch = broken[draw.below(kPool)];
                 ASSERT_EQ(cudaGraphNodeSetEnabled(graph.exec, nodes[n], 0), cudaSuccess);
-                gpu.run(batch.queries, batch.found);
+                batch.run(gpu);
                 ASSERT_EQ(cudaGraphNodeSetEnabled(graph.exec, nodes[n], 1), cudaSuccess);
-                ASSERT_EQ(batch.wrong_claims(), 0) << "node " << n;
+                ASSERT_EQ(batch.wrong_claims(), 0) << kNames[kind] << ", node " << n;
                 for (std::size_t q = 0; q < batch.queries.size(); ++q) {
                     differing +=
                         test::difference(batch.queries[q].kind, batch.wanted[q], batch.found[q])
@@ -127,7 +143,7 @@ TEST(CudaFault, AKernelLeftOut) {
                 }
             }
             std::printf("%s, kernel %zu left out %u times: found out %u times, %u answers differ\n",
-                        measures ? "clearances" : "proofs", n, count, dead, differing);
+                        kNames[kind], n, count, dead, differing);
         }
     }
 }
