@@ -128,8 +128,9 @@ LoadedMachine without_path(const LoadedMachine& loaded) {
 /// The longest cycle of the plan that was chosen, in the engine thread's place. False: it could not
 /// be measured.
 bool measure_plan(const LoadedMachine& loaded, const LiveEngines& engines, CycleFigures& out) {
-    if (engines.chosen.gpu) {
+    if (engines.chosen.gpu && engines.plan) {
         out.worst_case_us = engines.chosen.longest_us;
+        out.plan = format_plan(engines.plan->plan);
         return true;
     }
     std::string fault;
@@ -148,7 +149,8 @@ void measure_engine(const AdmissionRun& run, const LoadedMachine& loaded, LiveEn
     const LoadedMachine measured = without_path(loaded);
     const Machine& machine = measured.machine;
     std::optional<StopCertificate> certificate =
-        run.is_stoppable ? make_stop_certificate(measured) : std::nullopt;
+        run.is_stoppable && engines.plan ? make_stop_certificate(measured, engines.plan->plan)
+                                         : std::nullopt;
     if (run.is_stoppable && !certificate) {
         return;
     }

@@ -14,15 +14,17 @@ namespace axg {
 
 namespace {
 
-ChosenEngine choose(const LoadedMachine& loaded, const std::string& word, bool is_stoppable,
-                    CpuEngine& cpu) {
-    const Machine& machine = loaded.machine;
-    const CycleDemand demand = cycle_demand(machine, is_stoppable);
-    return choose_engine(loaded, cpu, engine_choice(word, machine), demand);
-}
-
 ChosenEngine none(std::string_view words) {
     return {.words = std::string(words), .refusal = EngineRefusal::unfit};
+}
+
+/// Of a GPU that was admitted with it.
+ChosenPlan plan_of_gpu(const ChosenEngine& chosen, const CycleDemand& demand) {
+    return {.plan = *demand.plan,
+            .is_fit = true,
+            .longest_us = chosen.longest_us,
+            .room_us = demand.times.engine_us,
+            .words = format_plan(*demand.plan)};
 }
 
 std::optional<ChosenPlan> plan_for(const LoadedMachine& loaded) {
@@ -34,6 +36,17 @@ std::optional<ChosenPlan> plan_for(const LoadedMachine& loaded) {
     return plan;
 }
 
+ChosenEngine choose(const LoadedMachine& loaded, const std::string& word, bool is_stoppable,
+                    CpuEngine& cpu, std::optional<ChosenPlan>& plan) {
+    CycleDemand demand = cycle_demand(loaded.machine, is_stoppable);
+    ChosenEngine chosen =
+        choose_engine_and_plan(loaded, cpu, engine_choice(word, loaded.machine), demand);
+    if (is_stoppable && chosen.refusal == EngineRefusal::none) {
+        plan = chosen.gpu ? plan_of_gpu(chosen, demand) : plan_for(loaded);
+    }
+    return chosen;
+}
+
 }  // namespace
 
 LiveEngines::LiveEngines(const LoadedMachine& loaded, const std::string& word, bool is_stoppable)
@@ -41,11 +54,7 @@ LiveEngines::LiveEngines(const LoadedMachine& loaded, const std::string& word, b
       containment_test(cpu ? make_containment_test(loaded, *cpu) : std::nullopt),
       chosen(!cpu                ? none(kNoLaneSet)
              : !containment_test ? none(kNoMemoryForContainment)
-                                 : choose(loaded, word, is_stoppable, *cpu)) {
-    if (is_stoppable && chosen.refusal == EngineRefusal::none && !chosen.gpu) {
-        plan = plan_for(loaded);
-    }
-}
+                                 : choose(loaded, word, is_stoppable, *cpu, plan)) {}
 
 int log_engines(const LiveEngines& engines) {
     if (!engines.chosen.words.empty()) {

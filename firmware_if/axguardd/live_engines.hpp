@@ -24,10 +24,9 @@ struct LiveEngines {
 
     std::optional<CpuEngine> cpu;
     std::optional<ContainmentTest> containment_test;
-    ChosenEngine chosen;  // without a refusal where all of them are there
-    // Of a stoppable guard on the CPU; empty where it could not be measured, and then nothing may
-    // be admitted.
+    // Of a stoppable guard; empty where it could not be measured, and then nothing may be admitted.
     std::optional<ChosenPlan> plan;
+    ChosenEngine chosen;  // without a refusal where all of them are there
 };
 
 /// What was chosen and why, or why not, goes to stderr. The exit code.

@@ -12,6 +12,8 @@
 #include "core/certificate/pair_queries.hpp"
 #include "core/machine/cycle_plan.hpp"
 #include "cuda/bench/measure_worst_case.hpp"
+#include "firmware_if/setup/choose_plan.hpp"
+#include "firmware_if/setup/format_plan.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
 #include "firmware_if/setup/longest_gpu_cycle.hpp"
 #include "firmware_if/setup/travel_sample.hpp"
@@ -135,6 +137,21 @@ ChosenEngine choose_engine(const LoadedMachine& loaded, CpuEngine& cpu, EngineCh
         out.gpu.reset();
     }
     return out;
+}
+
+ChosenEngine choose_engine_and_plan(const LoadedMachine& loaded, CpuEngine& cpu,
+                                    EngineChoice wanted, CycleDemand& demand,
+                                    std::uint32_t multiprocessors) {
+    const Machine& machine = loaded.machine;
+    std::optional<ChosenEngine> chosen(choose_engine(loaded, cpu, wanted, demand, multiprocessors));
+    const bool may_shorten = demand.plan && !machine.cycle.is_pinned && !machine.plan;
+    for (std::uint32_t step = kPlanStepAsStated;
+         may_shorten && step > 0 && chosen->refusal == EngineRefusal::unfit; --step) {
+        demand.plan = plan_at(machine, demand.tasks, step - 1);
+        chosen.emplace(choose_engine(loaded, cpu, wanted, demand, multiprocessors));
+        chosen->words += "; cycle plan: " + format_plan(*demand.plan);
+    }
+    return std::move(*chosen);
 }
 
 ChosenEngine choose_and_report(const LoadedMachine& loaded, CpuEngine& cpu, const std::string& word,

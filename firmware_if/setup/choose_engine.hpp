@@ -50,7 +50,14 @@ struct CycleDemand {
                                          EngineChoice wanted, const CycleDemand& demand,
                                          std::uint32_t multiprocessors = 0);
 
-/// The same for an option's word; what was measured and chosen goes to stderr.
+/// The same; where only a GPU will do, its longest cycle does not fit and the machine file pins no
+/// plan, with shorter lists, step by step (plan_at).
+/// @param demand  in: as cycle_demand; out: of the plan that was judged last
+[[nodiscard]] ChosenEngine choose_engine_and_plan(const LoadedMachine& loaded, CpuEngine& cpu,
+                                                  EngineChoice wanted, CycleDemand& demand,
+                                                  std::uint32_t multiprocessors = 0);
+
+/// choose_engine for an option's word; what was measured and chosen goes to stderr.
 [[nodiscard]] ChosenEngine choose_and_report(const LoadedMachine& loaded, CpuEngine& cpu,
                                              const std::string& word, const CycleDemand& demand,
                                              std::uint32_t multiprocessors = 0);

@@ -145,8 +145,9 @@ void report_contacts(CheckReport& report, CpuEngine& engine,
 /// Where another engine than the CPU's is wanted: may it run on this device?
 void report_choice(CheckReport& report, CpuEngine& engine) {
     const Machine& machine = report.loaded.machine;
-    const ChosenEngine chosen = choose_engine(report.loaded, engine, report.engine,
-                                              cycle_demand(machine, true), report.multiprocessors);
+    CycleDemand demand = cycle_demand(machine, true);
+    const ChosenEngine chosen = choose_engine_and_plan(report.loaded, engine, report.engine, demand,
+                                                       report.multiprocessors);
     report.exit_code = exit_code_of(chosen.refusal);
     if (!chosen.words.empty()) {
         EngineFacts& facts = *report.facts.engine;
