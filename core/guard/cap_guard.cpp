@@ -97,7 +97,6 @@ void CapGuard::note(const AxisSnapshot& snapshot, const CapFacts& facts, bool is
     latched_us_ = snapshot.latched_us;
     error_ = error;
     seen_count_ = is_first ? 0 : seen_count_;
-    permit_until_ = is_first ? 0 : permit_until_;
     seen_[seen_count_++ % kSeen] = {.sample = snapshot.sample, .position = snapshot.position};
     if (facts.status == AckStatus::unknown) {
         broken_ = {.kind = CapBreak::unknown_permit};
@@ -158,17 +157,6 @@ void CapGuard::order_next(const StopCycle& cycle, const CapWish* wish) noexcept 
     note_fall(before);
 }
 
-/// A sample that is not proven, as behind lost frames, is no stop yet while a permit of before is
-/// in force to the next one: each permit is proven to its end, whatever follows.
-void CapGuard::bridge(CycleResult& result) noexcept {
-    const std::uint64_t sample = seen_[(seen_count_ - 1) % kSeen].sample;
-    if (result.has_permit) {
-        permit_until_ = std::max(permit_until_, sample + result.samples);
-    } else if (result.reason == StopReason::predicted && sample + 1 < permit_until_) {
-        result.is_stop = false;
-    }
-}
-
 void CapGuard::judge(const StopCycle& cycle, const CapWish* wish, bool is_armed,
                      CycleResult& result) noexcept {
     if (!is_on()) {
@@ -177,7 +165,6 @@ void CapGuard::judge(const StopCycle& cycle, const CapWish* wish, bool is_armed,
     if (!is_armed) {  // nothing is ordered any more: from the next proof on, every axis is at rapid
         result.has_permit = result.has_permit && order().cap == kCapRapid;
         control_ = CapControl();
-        permit_until_ = 0;
     } else if (!cycle.is_jog) {
         watch_answer();
         if (broken_.kind != CapBreak::none && !result.is_stop) {
@@ -187,7 +174,6 @@ void CapGuard::judge(const StopCycle& cycle, const CapWish* wish, bool is_armed,
             result.pair = kNoIndex;
             result.cap_fact = broken_;
         }
-        bridge(result);
         if (result.has_permit && cycle.is_settled) {
             order_next(cycle, wish);
         }

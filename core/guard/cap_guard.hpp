@@ -45,8 +45,7 @@ class CapGuard {
     void bound(StopCertificate& certificate) const noexcept;
 
     /// After the judgement of what was proven with those bounds: the cap that the permit orders, or
-    /// a stop where the board does not keep its promise. A pair that is not proven is none while a
-    /// permit of before is in force.
+    /// a stop where the board does not keep its promise.
     /// @param wish  what is proven a little later; null: nothing is known
     void judge(const StopCycle& cycle, const CapWish* wish, bool is_armed,
                CycleResult& result) noexcept;
@@ -68,7 +67,6 @@ class CapGuard {
     [[nodiscard]] bool is_too_fast(std::uint32_t axis, const Seen& before) const noexcept;
     void watch_speeds() noexcept;
     void watch_answer() noexcept;
-    void bridge(CycleResult& result) noexcept;
 
     static constexpr std::uint32_t kSeen = 17;  // 16 periods from the first to the last
 
@@ -78,7 +76,6 @@ class CapGuard {
     std::int64_t latched_us_ = 0, fell_us_ = 0;  // newest sample, and last order to slow down
     std::array<Seen, kSeen> seen_{};
     std::uint64_t seen_count_ = 0;
-    std::uint64_t permit_until_ = 0;  // the sample that the last permit in force ends at
     std::array<double, kAxesMax> error_{};
     bool is_ignored_ = false;
     CapFact broken_;  // until a cycle was judged by it

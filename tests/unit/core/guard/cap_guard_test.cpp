@@ -42,20 +42,6 @@ struct Bench {
     /// One sample further, the second axis by so much.
     CycleResult step(const CapFacts& facts, double step_mm, const CapWish& wish = {},
                      bool is_armed = true) {
-        CycleResult result;
-        result.has_permit = true;
-        result.samples = 10;
-        return step_to(facts, step_mm, wish, is_armed, result);
-    }
-    /// Judged so without the cap.
-    CycleResult unproven(StopReason reason, bool is_armed = true) {
-        CycleResult result;
-        result.reason = reason;
-        result.is_stop = is_armed;
-        return step_to(facts_at(kCapRapid), 0, {}, is_armed, result);
-    }
-    CycleResult step_to(const CapFacts& facts, double step_mm, const CapWish& wish, bool is_armed,
-                        CycleResult result) {
         ++snapshot.sample;
         snapshot.latched_us += 1000;
         snapshot.axis_count = 2;
@@ -63,6 +49,8 @@ struct Bench {
         std::array<double, kAxesMax> errors{};
         errors.fill(kErrorMm);
         guard.note(snapshot, facts, false, errors);
+        CycleResult result;
+        result.has_permit = true;
         guard.judge({.status = SnapshotStatus::ok,
                      .is_settled = true,
                      .samples = 10,
@@ -165,30 +153,6 @@ TEST(CapGuard, AxesThatAreNotThereNeedNotAcknowledge) {
     CapFacts facts = facts_at(100);
     std::fill(facts.acked.begin() + 2, facts.acked.end(), kCapRapid);
     EXPECT_FALSE(bench.steps(2000, facts, 0, {.best = order}));
-}
-
-// Each permit is proven to its end: until then a sample that is not proven costs only its own.
-TEST(CapGuard, APermitInForceBridgesWhatIsNotProven) {
-    Bench bench;
-    EXPECT_TRUE(bench.unproven(StopReason::predicted).is_stop) << "before the first permit";
-    EXPECT_TRUE(bench.step(facts_at(kCapRapid), 0).has_permit);
-    for (int i = 1; i < 9; ++i) {
-        const CycleResult result = bench.unproven(StopReason::predicted);
-        EXPECT_FALSE(result.is_stop || result.has_permit) << i;
-        EXPECT_EQ(result.reason, StopReason::predicted) << "it is told all the same";
-    }
-    EXPECT_TRUE(bench.unproven(StopReason::predicted).is_stop) << "it ends at the next sample";
-    for (const StopReason reason : {StopReason::contained, StopReason::left_limits,
-                                    StopReason::engine, StopReason::known_answer}) {
-        EXPECT_TRUE(bench.step(facts_at(kCapRapid), 0).has_permit);
-        EXPECT_TRUE(bench.unproven(reason).is_stop) << to_text(reason);
-    }
-    EXPECT_TRUE(bench.step(facts_at(kCapRapid), 0).has_permit);
-    EXPECT_FALSE(bench.unproven(StopReason::predicted, false).is_stop);
-    EXPECT_TRUE(bench.unproven(StopReason::predicted).is_stop) << "disarmed meanwhile";
-    Bench without(CapPromise::none);
-    EXPECT_TRUE(without.step(facts_at(kCapRapid), 0).has_permit);
-    EXPECT_TRUE(without.unproven(StopReason::predicted).is_stop);
 }
 
 TEST(CapGuard, APermitThatWasNeverSentStops) {
