@@ -24,7 +24,7 @@ constexpr double kShortMm = 1e-5;  // clearance below the distance: 2^-24 of 200
 constexpr Capacities kRoomForAll{.node_pairs = 8192, .triangle_pairs = 8192, .rechecks = 8192};
 
 unsigned pose_count() {
-    return test::exact_count(600, 30);
+    return test::exact_count(360, 30);
 }
 
 bool same(const QueryResult& x, const QueryResult& y) {

@@ -29,7 +29,7 @@
 namespace axg::test {
 namespace {
 
-constexpr std::uint64_t kUsual = 96;
+constexpr std::uint64_t kUsual = 48;
 constexpr double kMarginMm = 0.5;
 constexpr double kWatchedMm = 8;  // how far the judge looks in motion
 constexpr std::int64_t kWatchUs = 250, kLongestUs = 1'500'000;
