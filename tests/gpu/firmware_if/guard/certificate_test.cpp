@@ -62,8 +62,9 @@ class CudaCertificate : public testing::Test {
         certificate.prove(engine, *paper.containment_test);
         certificate.keep();
     }
-    /// Of `count` certificates with the machine's plan, pair by pair.
-    Tally compare(CudaEngine& gpu, std::uint64_t count, std::uint64_t seed) {
+    /// Of AXG_COUNT certificates with the machine's plan, pair by pair; printed as `what`.
+    Tally compare(CudaEngine& gpu, const char* what, std::uint64_t usual_seed) {
+        const std::uint64_t seed = test::printed_seed(usual_seed);
         std::optional<StopCertificate> on_cpu = make_stop_certificate(paper.loaded),
                                        on_gpu = make_stop_certificate(paper.loaded);
         std::mt19937_64 random(seed);
@@ -93,13 +94,14 @@ class CudaCertificate : public testing::Test {
             tally.stages += on_gpu->work().stages;
         }
         EXPECT_EQ(gpu.fault(), nullptr) << gpu.fault();
+        print(what, seed, tally);
         return tally;
     }
     static bool is_proven(const PairProof& proof) {
         return proof.surfaces.proof == JointBoxProof::proven &&
                proof.containment_result.containment == Containment::none;
     }
-    void print(const char* what, std::uint64_t count, std::uint64_t seed, const Tally& tally) {
+    void print(const char* what, std::uint64_t seed, const Tally& tally) const {
         std::printf(
             "%s: %llu certificates (seed %llu), %.2f stages each; pairs proven by both %llu, by "
             "neither %llu, by the CPU alone %llu, by the GPU alone %llu; with full lists %llu\n",
@@ -115,6 +117,7 @@ class CudaCertificate : public testing::Test {
     test::PaperMachine paper;
     AxisSnapshot before, now, near;
     bool has_near = false;
+    const std::uint64_t count = test::count_from_environment(4000);
     std::uint64_t number = 0;
 };
 
@@ -137,10 +140,7 @@ std::optional<CudaEngine> roomy_engine(const LoadedMachine& loaded, std::string&
 TEST_F(CudaCertificate, WithLongListsPairsAreDecidedAlike) {
     paper.loaded.machine.cycle.lists = {1U << 22U, 1U << 22U, 1U << 26U, 1U << 26U, 0};
     AXG_GPU_OR_SKIP(gpu);
-    const std::uint64_t count = test::count_from_environment(4000),
-                        seed = test::printed_seed(20261128);
-    const Tally tally = compare(*gpu, count, seed);
-    print("long lists", count, seed, tally);
+    const Tally tally = compare(*gpu, "long lists", 20261128);
     EXPECT_EQ(tally.contradictions, 0U);
     EXPECT_LT(100 * tally.full, tally.neither);
     EXPECT_GT(20 * tally.neither, count) << "near contact often enough";
@@ -152,10 +152,7 @@ TEST_F(CudaCertificate, WithLongListsPairsAreDecidedAlike) {
 TEST_F(CudaCertificate, WithShortListsTheCpuProvesWhatTheGpuProves) {
     paper.loaded.machine.cycle.stages = 2;
     AXG_GPU_OR_SKIP(gpu);
-    const std::uint64_t count = test::count_from_environment(4000),
-                        seed = test::printed_seed(20261129);
-    const Tally tally = compare(*gpu, count, seed);
-    print("two stages", count, seed, tally);
+    const Tally tally = compare(*gpu, "two stages", 20261129);
     EXPECT_EQ(tally.contradictions, 0U);
     EXPECT_EQ(tally.gpu_alone, 0U);
     EXPECT_GT(tally.full, 0U) << "lists are short enough to be noticed";
