@@ -108,7 +108,7 @@ struct CanLayout {
     std::vector<std::uint32_t> quick_stop_ids;  // of drives that are told to stop by themselves
     PermitSamples permit_samples;
     // Receiver rules, docs/reference/protocol.md (5d).
-    std::uint8_t counter_delta_max = 3;   // 2..this = OK, some lost
+    std::uint8_t counter_delta_max = 6;   // 2..this = OK, some lost
     std::uint8_t sync_counter_init = 2;   // good frames before a wrong sequence is believed again
     std::uint32_t stale_after_us = 3000;  // age of the complete snapshot
     std::uint32_t frozen_samples = 100;   // mode says moving, positions bit-equal

@@ -14,6 +14,10 @@ constexpr std::uint32_t kErrorController = 0x004, kErrorBusOff = 0x040, kErrorRe
 constexpr std::uint8_t kControllerRxOverflow = 0x01, kControllerRxPassive = 0x10,
                        kControllerTxPassive = 0x20;
 
+// A counter that comes round sooner would take half of what is older for lost frames.
+constexpr std::uint16_t kWideCounter = 14;
+constexpr std::uint8_t kNarrowSteps = 3;
+
 }  // namespace
 
 ReceiverFault fault_of(FrameStatus status) noexcept {
@@ -65,15 +69,17 @@ AxisReceiver::AxisReceiver(const Machine& machine, ReceiverOptions options) noex
     : set_(make_frame_set(machine)), check_(machine, set_, options.takes_jumps), options_(options) {
     const CanLayout& can = machine.can;
     for (std::uint32_t i = 0; i < set_.frame_count; ++i) {
-        slots_[i].sequence = SequenceCheck(std::max<std::uint16_t>(2, set_.counter_modulus[i]),
-                                           can.counter_delta_max, can.sync_counter_init);
+        const std::uint16_t modulus = std::max<std::uint16_t>(2, set_.counter_modulus[i]);
+        const std::uint8_t steps = modulus < kWideCounter
+                                       ? std::min(kNarrowSteps, can.counter_delta_max)
+                                       : can.counter_delta_max;
+        slots_[i].sequence = SequenceCheck(modulus, steps, can.sync_counter_init);
     }
     look_ahead_slot_.sequence = SequenceCheck(256, can.counter_delta_max, can.sync_counter_init);
     session_slot_.sequence = SequenceCheck(16, can.counter_delta_max, can.sync_counter_init);
     sync_sequence_ = SequenceCheck(std::max<std::uint8_t>(2, set_.sync_counter_max),
                                    can.counter_delta_max, can.sync_counter_init);
     init_snapshots_ = std::max<std::uint8_t>(1, can.sync_counter_init);
-    estimates_max_ = can.counter_delta_max;
     stale_after_us_ = can.stale_after_us;
     heartbeat_timeout_us_ = can.heartbeat_timeout_us;
     index_modulus_ = can.format == CanFormat::fd ? kSyncCounterMax : 16;

@@ -184,7 +184,6 @@ class AxisReceiver {
     std::int64_t sync_window_us_ = 0;
     std::uint32_t index_modulus_ = 16;
     std::uint8_t init_snapshots_ = 2;
-    std::uint8_t estimates_max_ = 3;
 
     ReceiverState state_ = ReceiverState::invalid;
     ReceiverFault stop_cause_ = ReceiverFault::none;

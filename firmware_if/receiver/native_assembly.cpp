@@ -10,6 +10,7 @@ namespace axg {
 namespace {
 
 constexpr std::int64_t kDriftShare = 5000;   // sender clocks drift by at most 200 ppm
+constexpr std::uint8_t kEstimatesMost = 3;   // samples in a row whose SYNC was lost
 constexpr std::int64_t kSyncAgePeriods = 8;  // a stamp older than half the 16 kept is another turn
 // A look-ahead path may overtake the positions of its sample, or replace those that were lost.
 constexpr int kLookAheadSamplesLate = 2, kLookAheadSamplesEarly = 10;
@@ -153,7 +154,7 @@ AxisReceiver::Latch AxisReceiver::latch_of(std::uint8_t sample_index,
         estimates_ = 0;
         return dated(std::min(stamp.time_us, set_first_us_), stamp.counter, steps);
     }
-    if (!has_last_ || estimates_ >= estimates_max_) {
+    if (!has_last_ || estimates_ >= kEstimatesMost) {
         return {};
     }
     ++estimates_;
