@@ -17,6 +17,7 @@ constexpr double kUp = 1.0 + kShareUp;
 constexpr double kPositionUp = 0x1p-30;  // and than those of positions up to 1e5
 // Snapshots may be lost, and a cycle may be late: so many points behind the newest snapshot stay.
 constexpr std::uint32_t kPointsBehind = 64;
+constexpr std::uint64_t kMiddlesMost = 16;  // periods to either side; farther, jerk undoes it all
 
 /// How hard an axis can accelerate that stays within `error` of its command while neither changes
 /// its acceleration faster than `jerk`: three instants, a time L apart, say at most
@@ -293,41 +294,84 @@ void LookAheadPath::join(std::span<JointBox> pieces) const noexcept {
     }
 }
 
-/// What the axis itself may accelerate by in the step that ends at `sample`.
-LookAheadPath::Span LookAheadPath::acceleration_in_step(std::uint32_t axis,
-                                                        std::uint64_t sample) const noexcept {
-    const Axis& promised = machine_->axes[axis];
-    const double a = promised.acceleration_max, j = promised.jerk_max;
-    const std::uint64_t middle = sample - 1;
-    bool is_plain = machine_->guard.free_jerk_limited && holds(middle - 2) && holds(middle + 2);
-    for (std::uint64_t k = middle - 1; k <= middle + 2 && is_plain; ++k) {
-        is_plain = point(k).gap == 1;
+bool LookAheadPath::is_middle(std::uint64_t sample) const noexcept {
+    if (sample < 2 || !holds(sample - 2) || !holds(sample + 2)) {
+        return false;
     }
-    if (!is_plain) {
-        return {-a, a};
+    bool is_sent = true;
+    for (std::uint64_t k = sample - 1; k <= sample + 2 && is_sent; ++k) {
+        is_sent = point(k).gap == 1;
     }
-    // The second difference over two periods either way is a mean of the acceleration there,
-    // weighted by a hat around the beginning of the step: 1.3 periods of jerk to any instant of it.
+    return is_sent;
+}
+
+/// Those that say most about the step that ends at `sample`: its beginning, or where frames were
+/// lost about it, the nearest on either side.
+LookAheadPath::Middles LookAheadPath::middles_about(std::uint64_t sample) const noexcept {
+    Middles out;
+    const auto take = [&](std::uint64_t middle) {
+        const bool is_one = is_middle(middle);
+        if (is_one) {
+            out.sample[out.count++] = middle;
+        }
+        return is_one;
+    };
+    if (take(sample - 1)) {
+        return out;
+    }
+    for (std::uint64_t k = 2; k <= kMiddlesMost && sample >= k && !take(sample - k); ++k) {
+    }
+    for (std::uint64_t k = 0; k < kMiddlesMost && !take(sample + k); ++k) {
+    }
+    return out;
+}
+
+/// The second difference over two periods either way is a mean of the acceleration there, weighted
+/// by a hat around `middle`.
+LookAheadPath::Span LookAheadPath::mean_acceleration(std::uint32_t axis,
+                                                     std::uint64_t middle) const noexcept {
     const double moved = step(axis, point(middle).position[axis], point(middle + 2).position[axis]),
                  before =
                      step(axis, point(middle - 2).position[axis], point(middle).position[axis]);
     const double square = 4 * period_s_ * period_s_, count = 2 * options_.count[axis];
-    const double drift = 1.3 * j * period_s_ * (1 + kPeriodShare) + swing_[axis];
     const auto stretched = [square](double second_difference) {  // by the share of the period
         constexpr double kShort = (1 - kPeriodShare) * (1 - kPeriodShare),
                          kLong = (1 + kPeriodShare) * (1 + kPeriodShare);
         return Span{second_difference / (square * (second_difference < 0 ? kShort : kLong)),
                     second_difference / (square * (second_difference < 0 ? kLong : kShort))};
     };
-    const double low = stretched(moved - before - count).low - drift,
-                 high = stretched(moved - before + count).high + drift;
-    return {std::max(-a, low - kShareUp * std::fabs(low)),
-            std::min(a, high + kShareUp * std::fabs(high))};
+    return {stretched(moved - before - count).low, stretched(moved - before + count).high};
+}
+
+/// What the axis itself may accelerate by in the chord that the step ending at `sample` lies in.
+LookAheadPath::Span LookAheadPath::acceleration_in_step(std::uint32_t axis, std::uint64_t sample,
+                                                        const Middles& middles) const noexcept {
+    const Axis& promised = machine_->axes[axis];
+    const double a = promised.acceleration_max;
+    Span out{-a, a};
+    if (!machine_->guard.free_jerk_limited) {
+        return out;
+    }
+    const double gap = point(sample).gap;  // the chord ends so much later, or began so much before
+    for (std::uint32_t i = 0; i < middles.count; ++i) {
+        const double after = static_cast<double>(sample) - static_cast<double>(middles.sample[i]);
+        const double away = std::max(std::fabs(after + gap - 1), std::fabs(after - gap));
+        // A hat of two periods either way is at most 0.3 periods more than its middle from an
+        // instant that is a period or more away.
+        const double drift =
+            (away + 0.3) * promised.jerk_max * period_s_ * (1 + kPeriodShare) + swing_[axis];
+        const Span mean = mean_acceleration(axis, middles.sample[i]);
+        const double low = mean.low - drift, high = mean.high + drift;
+        out.low = std::max(out.low, low - kShareUp * std::fabs(low));
+        out.high = std::min(out.high, high + kShareUp * std::fabs(high));
+    }
+    return out.low <= out.high ? out : Span{-a, a};  // no axis within its limits goes like that
 }
 
 /// What the axis may be doing between two instants of the step that ends at `sample`.
 /// @param from, to  shares of the step
-AxisRange LookAheadPath::range_in_step(std::uint32_t axis, std::uint64_t sample, double from,
+AxisRange LookAheadPath::range_in_step(std::uint32_t axis, std::uint64_t sample,
+                                       const Middles& middles, double from,
                                        double to) const noexcept {
     const Axis& promised = machine_->axes[axis];
     const Point &begin = point(sample - 1), &end = point(sample);
@@ -338,7 +382,7 @@ AxisRange LookAheadPath::range_in_step(std::uint32_t axis, std::uint64_t sample,
     AxisRange out;
     out.low = std::min(x, y) - wide;
     out.high = std::max(x, y) + wide;
-    const Span acceleration = acceleration_in_step(axis, sample);
+    const Span acceleration = acceleration_in_step(axis, sample, middles);
     const double most = std::max(std::fabs(acceleration.low), std::fabs(acceleration.high));
     // Off the path by no more than the following error, and accelerations that differ by no more
     // than twice the largest: docs/theory/certificate.md, "Each axis by itself".
@@ -354,6 +398,17 @@ AxisRange LookAheadPath::range_in_step(std::uint32_t axis, std::uint64_t sample,
     out.acceleration_low = acceleration.low;
     out.acceleration_high = acceleration.high;
     return out;
+}
+
+std::optional<AxisRange> LookAheadPath::end(std::uint32_t axis) const noexcept {
+    if (is_empty_ || last_ - first_ < 2) {
+        return std::nullopt;
+    }
+    AxisRange range = range_in_step(axis, last_ - 1, middles_about(last_ - 1), 1, 1);
+    const double from = at(last_ - 2)[axis];
+    range.low += from;
+    range.high += from;
+    return range;
 }
 
 AxisLimits LookAheadPath::limits_of(std::uint32_t axis) const noexcept {
@@ -383,9 +438,10 @@ bool LookAheadPath::reach(std::uint64_t sample, double free_s,
         while (from < until && ahead <= steps) {
             const double to = std::min(until, static_cast<double>(ahead));
             const double step_begin = static_cast<double>(ahead - 1);
+            const Middles middles = middles_about(sample + ahead);
             for (std::uint32_t i = 0; i < count; ++i) {
                 const AxisRange now =
-                    range_in_step(i, sample + ahead, from - step_begin, to - step_begin);
+                    range_in_step(i, sample + ahead, middles, from - step_begin, to - step_begin);
                 const ReachRange range = stop_reach(limits_of(i), now, 0);
                 ranges[i].low = std::min(ranges[i].low, begin_at[i] + range.low);
                 ranges[i].high = std::max(ranges[i].high, begin_at[i] + range.high);

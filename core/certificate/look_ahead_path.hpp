@@ -69,6 +69,9 @@ class LookAheadPath {
         return ring_[sample % ring_.size()].position;
     }
 
+    /// Everything an axis may be doing a period before the last point, where there are more points.
+    [[nodiscard]] std::optional<AxisRange> end(std::uint32_t axis) const noexcept;
+
     /// Whether the axes are at the announced positions: within the following error,
     /// what a position may be off, and the way of the latch jitter. True where nothing was
     /// sent for that instant.
@@ -119,9 +122,18 @@ class LookAheadPath {
     struct Span {
         double low, high;
     };
-    [[nodiscard]] Span acceleration_in_step(std::uint32_t axis,
-                                            std::uint64_t sample) const noexcept;
-    [[nodiscard]] AxisRange range_in_step(std::uint32_t axis, std::uint64_t sample, double from,
+    /// Up to two points with two of their neighbours on either side, all of them sent.
+    struct Middles {
+        std::uint32_t count = 0;
+        std::array<std::uint64_t, 2> sample{};
+    };
+    [[nodiscard]] bool is_middle(std::uint64_t sample) const noexcept;
+    [[nodiscard]] Middles middles_about(std::uint64_t sample) const noexcept;
+    [[nodiscard]] Span mean_acceleration(std::uint32_t axis, std::uint64_t middle) const noexcept;
+    [[nodiscard]] Span acceleration_in_step(std::uint32_t axis, std::uint64_t sample,
+                                            const Middles& middles) const noexcept;
+    [[nodiscard]] AxisRange range_in_step(std::uint32_t axis, std::uint64_t sample,
+                                          const Middles& middles, double from,
                                           double to) const noexcept;
     [[nodiscard]] AxisLimits limits_of(std::uint32_t axis) const noexcept;
     void join(std::span<JointBox> pieces) const noexcept;

@@ -148,6 +148,44 @@ TEST_F(LookAheadPathTest, OneFrameLostCostsNothingAndTwoAreBridged) {
     EXPECT_GT(path->stretch(100, 5e-3).end, path->stretch(130, 5e-3).end);
 }
 
+// Points on either side of a hole say what the axis may accelerate by in it, and jerk adds little:
+// a stop from there leads about as far as from anywhere else. A tenth of what it was before.
+TEST_F(LookAheadPathTest, AHoleWidensTheReachOfAStopByWhatTheJerkMayDoInIt) {
+    const auto reach_at = [this](std::uint64_t sample) {
+        std::array<JointBox, kReachPieces> pieces;
+        EXPECT_TRUE(path->reach(sample, 8e-3, pieces));
+        return pieces[0].half[kZ];
+    };
+    for (std::uint64_t k = 1; k <= 300; ++k) {
+        if (k != 120 && k != 121) {
+            ASSERT_TRUE(path->note_path(straight(k, 50)));
+        }
+    }
+    const double whole = reach_at(30), with_hole = reach_at(115);
+    m.guard.free_jerk_limited = false;
+    make();
+    note_path(1, 300, 50);
+    const double any_acceleration = reach_at(30);
+    EXPECT_GT(with_hole, whole);
+    EXPECT_LT(with_hole - whole, 0.25 * (any_acceleration - whole));
+}
+
+TEST_F(LookAheadPathTest, ItsEndSaysHowTheAxisGoesOn) {
+    EXPECT_FALSE(path->end(kZ));
+    note_path(1, 2, 50);
+    EXPECT_FALSE(path->end(kZ)) << "one step says nothing about a speed before";
+    note_path(3, 40, 50);
+    const auto end = path->end(kZ);
+    ASSERT_TRUE(end);
+    EXPECT_NEAR(0.5 * (end->low + end->high), -0.05 * 39, 1e-9) << "a period before the last point";
+    EXPECT_LT(end->speed_low, -50);
+    EXPECT_GT(end->speed_high, -50);
+    EXPECT_LT(end->speed_high - end->speed_low, 10);
+    EXPECT_LT(end->acceleration_high - end->acceleration_low, 400);
+    path->clear();
+    EXPECT_FALSE(path->end(kZ));
+}
+
 TEST_F(LookAheadPathTest, ALargeHoleLeavesNothingBeforeIt) {
     note_path(1, 100, 150);
     ASSERT_TRUE(path->note_path(straight(100 + kPathGapMax + 1, 150)));
