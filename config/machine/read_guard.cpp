@@ -93,9 +93,6 @@ void read_cap(MapReader& reader, MachineDraft& draft) {
             "cap", found + " with one number as can.permit_samples",
             "none, or two numbers, such as [8, 12]; the cap falls where the longer permit "
             "is not proven");
-    } else if (can.look_ahead_samples != 0) {
-        reader.report("cap", found + " with can.ahead",
-                      "none, or no ahead; the look-ahead path bounds the motion already");
     } else {
         machine.guard.cap = static_cast<CapPromise>(cap);
         if (!draft.states_permit_samples) {

@@ -128,6 +128,11 @@ class StopCertificate {
     /// Everything `axis` may be doing at the newest snapshot; its whole range of speed in a stop of
     /// the board's own and until 16 strides of rest are over. Precondition: one was noted.
     [[nodiscard]] AxisRange now(std::uint32_t axis) const noexcept;
+    /// The same where the look-ahead path ends; without one, now.
+    [[nodiscard]] AxisRange announced(std::uint32_t axis) const noexcept {
+        const auto end = path_ ? path_->end(axis) : std::nullopt;
+        return end ? *end : now(axis);
+    }
     /// What it is promised to keep to, and no faster than `bound_speeds` has it.
     [[nodiscard]] AxisLimits bounded_limits(std::uint32_t axis) const noexcept;
     /// How far `axis` may be from where the newest snapshot has it as long as nothing commands it

@@ -26,7 +26,9 @@ double cap_answer_seconds(const Machine& machine) noexcept {
         slowest_s = std::max(slowest_s, axis.speed_max / axis.acceleration_max + ramp_s);
     }
     // A planner that averages its commands has half of the acceleration.
-    return machine.guard.cap_lead_s + 2 * slowest_s + kAnswerPeriods * machine.can.sample_us * 1e-6;
+    // What was announced before the order is followed as it was announced.
+    const double periods = kAnswerPeriods + machine.can.look_ahead_samples;
+    return machine.guard.cap_lead_s + 2 * slowest_s + periods * machine.can.sample_us * 1e-6;
 }
 
 AxisCaps CapGuard::bound_caps(const CapOrder& order) const noexcept {

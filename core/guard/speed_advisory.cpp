@@ -92,6 +92,15 @@ AxisRanges ranges_of(const Machine& machine, const StopCertificate& certificate)
     return ranges;
 }
 
+/// What was announced can not be slowed down any more.
+AxisRanges announced_ranges(const Machine& machine, const StopCertificate& certificate) noexcept {
+    AxisRanges ranges;
+    for (std::uint32_t i = 0; i < machine.axes.size(); ++i) {
+        ranges[i] = certificate.announced(i);
+    }
+    return ranges;
+}
+
 JointBox capped_box(const Machine& machine, const AxisRanges& ranges, double share) noexcept {
     const double free_s = free_seconds(machine, machine.can.permit_samples.least);
     const double lead_s = cap_lead_seconds(machine);
@@ -347,7 +356,7 @@ CapWish SpeedAdvisory::search_orders(const Engine& engine, const StopCertificate
                                      std::uint32_t queries, const CapOrder& order) noexcept {
     const std::span<const JointBoxTask> pairs = certificate.tasks();
     AXG_ASSERT(pairs.size() <= open_.size());
-    const AxisRanges ranges = ranges_of(*machine_, certificate);
+    const AxisRanges ranges = announced_ranges(*machine_, certificate);
     const OrderList list = orders_about(*machine_, ranges, order);
     const OrderTried rapid{.growth = list.is_slowed ? kAnyGrowth : 1};
     const std::uint32_t open =

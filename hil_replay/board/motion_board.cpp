@@ -71,11 +71,13 @@ MotionBoard::MotionBoard(const Machine& machine, std::span<const double> start,
         axes_[i].position = sent_[i] = start[i];
     }
     const double period_s = machine.can.sample_us * kSecondsPerUs;
-    shares_.resize(2 + static_cast<std::size_t>(std::ceil(options.cap_smooth_s / period_s)), 0.0);
+    // What is told now acts on commands that the axes follow later.
+    options_.cap_smooth_s += machine.can.look_ahead_samples * period_s;
+    shares_.resize(2 + static_cast<std::size_t>(std::ceil(options_.cap_smooth_s / period_s)), 0.0);
     late_shares_.resize(static_cast<std::size_t>(kCapLateUs / machine.can.sample_us) + 1, 1.0);
     if (keeps_cap() && options_.axis_shares != nullptr) {
         axis_caps_.emplace(machine, *options.axis_shares,
-                           CapKeeping{options.cap_smooth_s, options.cap_fault});
+                           CapKeeping{options_.cap_smooth_s, options.cap_fault});
     } else if (keeps_cap()) {
         *options_.speed_share = 0;
     }
@@ -258,6 +260,7 @@ void MotionBoard::follow(std::int64_t until_us) {
         state_ = BoardState::finished;
     }
     now_us_ = until_us;
+    note_speeds();
 }
 
 void MotionBoard::brake_for(std::int64_t until_us) {

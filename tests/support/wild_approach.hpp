@@ -28,6 +28,7 @@ enum class Aim : std::uint8_t {
     turn,      // some axes begin to move on the way
     tool,      // the long tool leaves on the way down, and the guard falls silent soon after
     let_go,    // as crawl, nearer, and the guard falls silent when it says stop
+    announce,  // a cap, of a board with a look-ahead path
 };
 
 struct WildApproach {
@@ -217,6 +218,9 @@ inline void draw_limits_for(Dice& dice, Aim aim, Machine& machine) {
         case Aim::tool:
             draw_for_tool(dice, machine);
             break;
+        case Aim::announce:
+            machine.guard.cap = dice.chance(0.5) ? CapPromise::all_axes : CapPromise::per_axis;
+            break;
     }
 }
 
@@ -304,7 +308,12 @@ inline double draw_way(Dice& dice, const Machine& machine, Aim aim, WildApproach
 
 /// A path that is announced, or another tool, or a turn, for those that have time for it.
 inline void draw_story(Dice& dice, Aim aim, Machine& machine, WildApproach& out) {
-    if (machine.guard.cap == CapPromise::none && dice.chance(0.5)) {
+    const bool is_capped = machine.guard.cap != CapPromise::none;
+    const double announces = aim == Aim::announce ? 1
+                             : !is_capped         ? 0.5
+                             : aim == Aim::any    ? 0.2
+                                                  : 0;
+    if (dice.chance(announces)) {
         std::mt19937_64 random(out.seed);
         give_look_ahead(random, {.linear_mm = 0.02}, machine);
         machine.guard.promise =

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The deployed guard with guard.cap, of all axes and of single ones, in closed loop, positions
-// alone: both near programs get past the place where they are stopped without it, also while frames
-// are lost; and a board that acknowledges what it does not keep is seen. AXG_COUNT: seconds of
-// machine time at most. Figures: docs/measurements/cap.md.
+// alone and with commands ahead: both near programs get past the place where they are stopped
+// without it, also while frames are lost; and a board that acknowledges what it does not keep is
+// seen. AXG_COUNT: seconds of machine time at most. Figures: docs/measurements/cap.md.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,6 +31,7 @@ struct CapCase {
     CapPromise promise = CapPromise::all_axes;
     CapFault fault = CapFault::none;
     double lost = 0, permit_lost = 0;
+    std::uint32_t look_ahead_samples = 0;
 };
 
 CapRun drive_with(const Example& example, const CapCase& one) {
@@ -40,6 +41,10 @@ CapRun drive_with(const Example& example, const CapCase& one) {
     loaded.machine.guard.cap = one.promise;
     if (one.promise != CapPromise::none) {  // as the machine file is read
         loaded.machine.can.permit_samples = kPermitSamplesLonger;
+    }
+    if (one.look_ahead_samples != 0) {
+        loaded.machine.can.format = CanFormat::fd;
+        loaded.machine.can.look_ahead_samples = one.look_ahead_samples;
     }
     const Machine& machine = loaded.machine;
     const Program program = read_example(example.program, machine);
@@ -104,6 +109,14 @@ TEST_P(EnforcedCap, OfSingleAxesItLosesLittle) {
     EXPECT_NE(run.result.state, BoardState::stopped);
     EXPECT_FALSE(run.result.slow_downs.empty());
     EXPECT_LT(run.result.lost_s, 0.4 * run.seconds);
+}
+
+TEST_P(EnforcedCap, WithCommandsAheadItLosesLess) {
+    const CapRun run = drive_with(GetParam(), {.lost = 0.01, .look_ahead_samples = 300});
+    EXPECT_EQ(run.result.cap_breaches, 0U) << "the board keeps less than it says";
+    EXPECT_FALSE(run.has_contact);
+    EXPECT_NE(run.result.state, BoardState::stopped);
+    EXPECT_LT(run.result.lost_s, 0.3 * run.seconds);
 }
 
 TEST_P(EnforcedCap, ABoardThatKeepsNoCapOfSingleAxesIsSeenOrStopped) {

@@ -25,7 +25,8 @@ bool is_telling() {
 }
 
 TEST(CapAblation, AsTheyAreNoneTouches) {
-    for (const Aim aim : {Aim::straight, Aim::crawl, Aim::turn, Aim::tool, Aim::let_go}) {
+    for (const Aim aim :
+         {Aim::straight, Aim::crawl, Aim::turn, Aim::tool, Aim::let_go, Aim::announce}) {
         const ApproachTally whole = run("whole", Wrong::nothing, aim);
         EXPECT_EQ(whole.touched, 0U);
         EXPECT_EQ(whole.breaches, 0U);

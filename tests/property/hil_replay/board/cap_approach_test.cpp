@@ -36,6 +36,25 @@ TEST(CapApproach, NeverTouchesWhateverTheWireDoes) {
     }
 }
 
+// An order acts behind what is announced, and the ack follows when the axes have come there.
+TEST(CapApproach, NorWhereTheBoardAnnouncesItsPath) {
+    const std::uint64_t seed = printed_seed(20261128);
+    const std::uint64_t count = std::max<std::uint64_t>(1, count_from_environment(kUsual) / 8);
+    const ApproachTally whole = run_approaches(seed, count, Wrong::nothing, Aim::announce);
+    print("announced", whole);
+    EXPECT_EQ(whole.touched, 0U);
+    EXPECT_EQ(whole.breaches, 0U);
+    EXPECT_EQ(whole.left_limits, 0U);
+    EXPECT_EQ(whole.left_cap, 0U);
+    const ApproachTally lies = run_approaches(seed, count, Wrong::ignores, Aim::announce);
+    print("announced, acknowledged at once, not kept", lies);
+    EXPECT_EQ(lies.touched, 0U) << "the path bounds the motion, whatever the ack says";
+    if (count >= kUsual / 8) {
+        EXPECT_GT(whole.slowed, 0U);
+        EXPECT_GT(lies.left_cap, 0U);
+    }
+}
+
 TEST(CapApproach, TouchesWhereARuleIsWrong) {
     const std::uint64_t seed = printed_seed(20261128);
     const std::uint64_t count = count_from_environment(kUsual) / 2;
