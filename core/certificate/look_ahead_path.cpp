@@ -14,7 +14,8 @@ namespace {
 
 constexpr double kShareUp = 0x1p-40;  // more than the roundings of any formula below
 constexpr double kUp = 1.0 + kShareUp;
-constexpr double kPositionUp = 0x1p-30;  // and than those of positions up to 1e5
+constexpr double kBoardFast = 1 + kPeriodShare;  // its timer; what it calls a second is longer
+constexpr double kPositionUp = 0x1p-30;          // and than those of positions up to 1e5
 // Snapshots may be lost, and a cycle may be late: so many points behind the newest snapshot stay.
 constexpr std::uint32_t kPointsBehind = 64;
 constexpr std::uint64_t kMiddlesMost = 16;  // periods to either side; farther, jerk undoes it all
@@ -174,28 +175,29 @@ bool LookAheadPath::note_path(const PathPoints& points) noexcept {
 
 /// How far the path may lie off the chord that ends at `sample`.
 double LookAheadPath::bulge(std::uint32_t axis, std::uint64_t sample) const noexcept {
-    const double time = point(sample).gap * period_s_;
-    return machine_->axes[axis].acceleration_max * time * time / 8;
+    const double time = point(sample).gap * period_s_ * kBoardFast;
+    return machine_->axes[axis].acceleration_max * time * time / 8 * kUp;
 }
 
-/// Largest |q'| in the step that ends at `sample`: its mean, and what the speed may change by in
-/// half of the chord's time.
+/// Largest |q'| in the step that ends at `sample`, by the board's timer: its mean, and what the
+/// speed may change by in half of the chord's time.
 double LookAheadPath::speed_in_step(std::uint32_t axis, std::uint64_t sample) const noexcept {
     const Axis& promised = machine_->axes[axis];
     const Point &to = point(sample), &from = point(sample - 1);
     const double count = options_.count[axis];
     const double moved = step(axis, from.position[axis], to.position[axis]);
-    double acceleration = promised.acceleration_max;
+    double acceleration = promised.acceleration_max * kBoardFast * kBoardFast;
     if (machine_->guard.free_jerk_limited && to.gap == 1 && from.gap == 1 && holds(sample - 2)) {
         // The second difference is a mean of the acceleration over two periods, centred on the
         // beginning of this step, so at most a period away from any instant of it.
         const double before = step(axis, point(sample - 2).position[axis], from.position[axis]);
         const double mean = (std::fabs(moved - before) + 2 * count) / (period_s_ * period_s_);
-        acceleration = std::min(acceleration, mean + promised.jerk_max * period_s_);
+        const double jerk = promised.jerk_max * kBoardFast * kBoardFast * kBoardFast;
+        acceleration = std::min(acceleration, mean + jerk * period_s_);
     }
     const double speed =
         (std::fabs(moved) + count) / period_s_ + 0.5 * acceleration * to.gap * period_s_;
-    return std::min(speed, promised.speed_max) * kUp;
+    return std::min(speed, promised.speed_max * kBoardFast) * kUp;
 }
 
 bool LookAheadPath::keeps_to(const AxisSnapshot& snapshot) const noexcept {

@@ -98,7 +98,7 @@ class LookAheadPath {
   private:
     struct Point {
         std::array<double, kAxesMax> position;
-        std::uint32_t gap;  // periods of the chord that ends here or runs through; 1: sent
+        std::uint32_t gap;  // periods of the chord that ends here or runs through
         bool is_bridge;
     };
     struct Ratios {
