@@ -12,7 +12,7 @@
 namespace axg {
 
 /// Raised with any change of the bytes or of what they mean.
-inline constexpr std::uint32_t kCompiledVersion = 5;
+inline constexpr std::uint32_t kCompiledVersion = 6;
 /// Of a tag: TEXT, MESH.
 inline constexpr std::size_t kTagBytes = 4;
 
