@@ -162,6 +162,30 @@ TEST(SignalReceiver, CountersFindRepetitionLossAndASecondSender) {
     EXPECT_TRUE(fifteen.heard.snapshots.empty());
 }
 
+// A frame that is half a turn late would pass for a few that were lost.
+TEST(SignalReceiver, ACounterOfThreeBitsBearsThreeSteps) {
+    for (const std::uint64_t lost : {2U, 3U}) {
+        Machine machine;
+        ASSERT_EQ(faults_with_file(dbc_machine(),
+                                   with(kBoardDbc, "Count : 32|4@1+ (1,0) [0|14]",
+                                        "Count : 32|3@1+ (1,0) [0|7]"),
+                                   machine),
+                  "");
+        machine.can.stale_after_us = 12'000;
+        ASSERT_EQ(machine.can.counter_delta_max, 6);
+        AxisEncoder encoder(machine);
+        AxisReceiver receiver(machine);
+        Heard heard;
+        for (std::uint64_t k = 0; k < 20; ++k) {
+            const std::vector<CanFrame> frames = frames_of(encoder, snapshot_of(k));
+            if (k < 10 || k >= 10 + lost) {
+                listen(receiver, frames, heard);
+            }
+        }
+        EXPECT_EQ(receiver.counters().of(ReceiverFault::wrong_sequence), lost == 2 ? 0U : 2U);
+    }
+}
+
 TEST(SignalReceiver, AFloatThatIsNoNumberStops) {
     for (const std::uint32_t bits : {0x7FC00000U, 0x7F800000U, 0xFF800000U}) {
         Board board(dbc_machine());
