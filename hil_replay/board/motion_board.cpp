@@ -212,7 +212,10 @@ void MotionBoard::note_speeds() noexcept {
 /// Once a period, between motion and latch. It slows down where that is ordered, and names the
 /// permit when no axis is faster, nor will be by what was commanded; it speeds up when it may.
 void MotionBoard::keep_cap() {
-    if (!keeps_cap()) {
+    // A stop along the path goes on through commands that are older than what was told since.
+    const bool is_behind =
+        state_ == BoardState::braking && machine_.guard.promise == StopPromise::path_keeping;
+    if (!keeps_cap() || is_behind) {
         return;
     }
     if (axis_caps_) {
