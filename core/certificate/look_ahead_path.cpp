@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kShareUp = 0x1p-40;  // more than the roundings of any formula below
 constexpr double kUp = 1.0 + kShareUp;
-constexpr double kBoardFast = 1 + kPeriodShare;  // its timer; what it calls a second is longer
-constexpr double kPositionUp = 0x1p-30;          // and than those of positions up to 1e5
+constexpr double kLongestPeriod = 1 + kPeriodShare;  // of a board, in nominal ones
+constexpr double kPositionUp = 0x1p-30;              // and than those of positions up to 1e5
 // Snapshots may be lost, and a cycle may be late: so many points behind the newest snapshot stay.
 constexpr std::uint32_t kPointsBehind = 64;
 constexpr std::uint64_t kMiddlesMost = 16;  // periods to either side; farther, jerk undoes it all
@@ -175,7 +175,7 @@ bool LookAheadPath::note_path(const PathPoints& points) noexcept {
 
 /// How far the path may lie off the chord that ends at `sample`.
 double LookAheadPath::bulge(std::uint32_t axis, std::uint64_t sample) const noexcept {
-    const double time = point(sample).gap * period_s_ * kBoardFast;
+    const double time = point(sample).gap * period_s_ * kLongestPeriod;
     return machine_->axes[axis].acceleration_max * time * time / 8 * kUp;
 }
 
@@ -186,18 +186,18 @@ double LookAheadPath::speed_in_step(std::uint32_t axis, std::uint64_t sample) co
     const Point &to = point(sample), &from = point(sample - 1);
     const double count = options_.count[axis];
     const double moved = step(axis, from.position[axis], to.position[axis]);
-    double acceleration = promised.acceleration_max * kBoardFast * kBoardFast;
+    double acceleration = promised.acceleration_max * kLongestPeriod * kLongestPeriod;
     if (machine_->guard.free_jerk_limited && to.gap == 1 && from.gap == 1 && holds(sample - 2)) {
         // The second difference is a mean of the acceleration over two periods, centred on the
         // beginning of this step, so at most a period away from any instant of it.
         const double before = step(axis, point(sample - 2).position[axis], from.position[axis]);
         const double mean = (std::fabs(moved - before) + 2 * count) / (period_s_ * period_s_);
-        const double jerk = promised.jerk_max * kBoardFast * kBoardFast * kBoardFast;
+        const double jerk = promised.jerk_max * kLongestPeriod * kLongestPeriod * kLongestPeriod;
         acceleration = std::min(acceleration, mean + jerk * period_s_);
     }
     const double speed =
         (std::fabs(moved) + count) / period_s_ + 0.5 * acceleration * to.gap * period_s_;
-    return std::min(speed, promised.speed_max * kBoardFast) * kUp;
+    return std::min(speed, promised.speed_max * kLongestPeriod) * kUp;
 }
 
 bool LookAheadPath::keeps_to(const AxisSnapshot& snapshot) const noexcept {
@@ -361,7 +361,7 @@ LookAheadPath::Span LookAheadPath::acceleration_in_step(std::uint32_t axis, std:
         // A hat of two periods either way is at most 0.3 periods more than its middle from an
         // instant that is a period or more away.
         const double drift =
-            (away + 0.3) * promised.jerk_max * period_s_ * (1 + kPeriodShare) + swing_[axis];
+            (away + 0.3) * promised.jerk_max * period_s_ * kLongestPeriod + swing_[axis];
         const Span mean = mean_acceleration(axis, middles.sample[i]);
         const double low = mean.low - drift, high = mean.high + drift;
         out.low = std::max(out.low, low - kShareUp * std::fabs(low));

@@ -84,19 +84,12 @@ double capped_distance(const AxisLimits& limits, const AxisRange& now, double fa
                                    end.acceleration + unknown);
 }
 
-AxisRanges ranges_of(const Machine& machine, const StopCertificate& certificate) noexcept {
+AxisRanges ranges_of(const Machine& machine, const StopCertificate& certificate,
+                     AxisRange (StopCertificate::*range_of)(std::uint32_t)
+                         const noexcept) noexcept {
     AxisRanges ranges;
     for (std::uint32_t i = 0; i < machine.axes.size(); ++i) {
-        ranges[i] = certificate.now(i);
-    }
-    return ranges;
-}
-
-/// What was announced can not be slowed down any more.
-AxisRanges announced_ranges(const Machine& machine, const StopCertificate& certificate) noexcept {
-    AxisRanges ranges;
-    for (std::uint32_t i = 0; i < machine.axes.size(); ++i) {
-        ranges[i] = certificate.announced(i);
+        ranges[i] = (certificate.*range_of)(i);
     }
     return ranges;
 }
@@ -232,7 +225,7 @@ std::uint32_t feeds_about(std::uint32_t last, Feeds& out) noexcept {
 
 JointBox capped_reach(const Machine& machine, const StopCertificate& certificate,
                       double share) noexcept {
-    return capped_box(machine, ranges_of(machine, certificate), share);
+    return capped_box(machine, ranges_of(machine, certificate, &StopCertificate::now), share);
 }
 
 std::optional<SpeedAdvisory> SpeedAdvisory::create(const Machine& machine) {
@@ -279,7 +272,7 @@ std::uint8_t SpeedAdvisory::search(const Engine& engine, const StopCertificate& 
                                    std::uint32_t last, std::uint32_t queries) noexcept {
     const std::span<const JointBoxTask> pairs = certificate.tasks();
     AXG_ASSERT(pairs.size() <= open_.size());
-    const AxisRanges ranges = ranges_of(*machine_, certificate);
+    const AxisRanges ranges = ranges_of(*machine_, certificate, &StopCertificate::now);
     Feeds feeds{};
     const std::uint32_t feed_count = feeds_about(last, feeds);
     const JointBox widest = capped_box(*machine_, ranges, share_of(feeds[0]));
@@ -356,7 +349,8 @@ CapWish SpeedAdvisory::search_orders(const Engine& engine, const StopCertificate
                                      std::uint32_t queries, const CapOrder& order) noexcept {
     const std::span<const JointBoxTask> pairs = certificate.tasks();
     AXG_ASSERT(pairs.size() <= open_.size());
-    const AxisRanges ranges = announced_ranges(*machine_, certificate);
+    // What was announced can not be slowed down any more.
+    const AxisRanges ranges = ranges_of(*machine_, certificate, &StopCertificate::announced);
     const OrderList list = orders_about(*machine_, ranges, order);
     const OrderTried rapid{.growth = list.is_slowed ? kAnyGrowth : 1};
     const std::uint32_t open =

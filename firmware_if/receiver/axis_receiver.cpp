@@ -18,6 +18,14 @@ constexpr std::uint8_t kControllerRxOverflow = 0x01, kControllerRxPassive = 0x10
 constexpr std::uint16_t kWideCounter = 14;
 constexpr std::uint8_t kNarrowSteps = 3;
 
+/// @param modulus  of the counter; 0: the frame has none
+SequenceCheck sequence_of(const CanLayout& can, std::uint16_t modulus) noexcept {
+    const std::uint8_t steps = modulus < kWideCounter
+                                   ? std::min(kNarrowSteps, can.counter_delta_max)
+                                   : can.counter_delta_max;
+    return {std::max<std::uint16_t>(2, modulus), steps, can.sync_counter_init};
+}
+
 }  // namespace
 
 ReceiverFault fault_of(FrameStatus status) noexcept {
@@ -69,16 +77,11 @@ AxisReceiver::AxisReceiver(const Machine& machine, ReceiverOptions options) noex
     : set_(make_frame_set(machine)), check_(machine, set_, options.takes_jumps), options_(options) {
     const CanLayout& can = machine.can;
     for (std::uint32_t i = 0; i < set_.frame_count; ++i) {
-        const std::uint16_t modulus = std::max<std::uint16_t>(2, set_.counter_modulus[i]);
-        const std::uint8_t steps = modulus < kWideCounter
-                                       ? std::min(kNarrowSteps, can.counter_delta_max)
-                                       : can.counter_delta_max;
-        slots_[i].sequence = SequenceCheck(modulus, steps, can.sync_counter_init);
+        slots_[i].sequence = sequence_of(can, set_.counter_modulus[i]);
     }
-    look_ahead_slot_.sequence = SequenceCheck(256, can.counter_delta_max, can.sync_counter_init);
-    session_slot_.sequence = SequenceCheck(16, can.counter_delta_max, can.sync_counter_init);
-    sync_sequence_ = SequenceCheck(std::max<std::uint8_t>(2, set_.sync_counter_max),
-                                   can.counter_delta_max, can.sync_counter_init);
+    look_ahead_slot_.sequence = sequence_of(can, 256);
+    session_slot_.sequence = sequence_of(can, 16);
+    sync_sequence_ = sequence_of(can, set_.sync_counter_max);
     init_snapshots_ = std::max<std::uint8_t>(1, can.sync_counter_init);
     stale_after_us_ = can.stale_after_us;
     heartbeat_timeout_us_ = can.heartbeat_timeout_us;

@@ -150,7 +150,7 @@ TEST_F(LookAheadPathTest, OneFrameLostCostsNothingAndTwoAreBridged) {
 }
 
 // Points on either side of a hole say what the axis may accelerate by in it, and jerk adds little:
-// a stop from there leads about as far as from anywhere else. A tenth of what it was before.
+// a stop from there leads about as far as from anywhere else.
 TEST_F(LookAheadPathTest, AHoleWidensTheReachOfAStopByWhatTheJerkMayDoInIt) {
     const auto reach_at = [this](std::uint64_t sample) {
         std::array<JointBox, kReachPieces> pieces;
