@@ -68,7 +68,7 @@ TEST_F(LongestGpuCycle, TheFirstStageMayAskTwice) {
     const CycleDemand demand = cycle_demand(loaded_.machine, true);
     ASSERT_TRUE(demand.asks_twice);
     const WorkLists& lists = demand.plan->lists[0];
-    const WorstCaseCall& first = cycles(true)[0].calls[0];
+    const WorstCaseCall first = cycles(true)[0].calls[0];
     EXPECT_EQ(first.queries, 2 * demand.tasks + 2);
     expect_no_less(first, {2 * lists.node_pairs, 2 * lists.leaf_pairs, 2 * lists.box_rows,
                            2 * lists.triangle_pairs, 2 * lists.rechecks});
