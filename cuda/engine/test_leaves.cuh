@@ -373,6 +373,7 @@ __device__ bool take(const DeviceBuffers& b, std::uint32_t i, std::uint32_t coun
         tile.at = at;
         ++tile.handled;
     }
+    __syncwarp();  // the others read it, and a vote puts no order on memory
     // Other warps lose groups meanwhile: all lanes of this one have to see the same.
     return ballot(is_lost(b, b.prepared[at.query], kLossOfClipping)) == 0 &&
            !is_over(b.tallies[at.query], kTreeLevelsMax - 1, b.limits.node_pairs);

@@ -9,6 +9,7 @@
 # There: build/gpu-bundle/run.sh axguard-lab bench --engine cuda; run.sh gpu_tests parity_test
 # or run.sh --tests
 # or run.sh plan_partition.sh build/gpu-bundle/bin OUT 8
+# or run.sh checkers.sh build/gpu-bundle/bin OUT
 # or first build/gpu-bundle/build.sh, and then the same.
 set -euo pipefail
 if [[ $# -ne 2 || ! -x $1/axguard ]]; then
@@ -31,7 +32,7 @@ for program in "$fresh"/bin/*; do
     ldd "$program" | awk '$3 ~ /^\// {print $3}' |
         grep -vE '/(libc|libm|libdl|libpthread|librt)\.so' || true
 done | sort -u | xargs -r cp -L -t "$fresh/lib"
-cp "$root/tests/device/plan_partition.sh" "$fresh/bin/"
+cp "$root"/tests/device/{plan_partition,checkers}.sh "$fresh/bin/"
 # Sources and headers, as the repository has them; static libraries without the CUDA ones.
 mkdir -p "$fresh/include" "$fresh/static"
 (cd "$root" && find core cuda firmware_if config hil_replay tests/support tests/gpu \
