@@ -95,14 +95,20 @@ def held():
     expect(HEARTBEAT in ids, "it lives")
 
 
+BUSY_HOST_RETRIES = iter(range(2))
+
+
 def busy_host():
     """The host stops the whole guest again and again, for longer than a permit lasts (boot.py): the
-    guest's clock stops with it, and permits go on."""
+    guest's clock stops with it, and permits go on. Who stands still by a hypervisor's doing is
+    tried again, twice: each try has more than ten stops of ours, and any of them would end it."""
     board, guard = armed()
     bus = Bus()
     time.sleep(3)
-    expect(bus.count(PERMIT) > 500, *guard.lines)
+    if guard.has_stopped() and next(BUSY_HOST_RETRIES, None) is not None:
+        guard.check_busy()
     expect(not guard.has_stopped(), *guard.lines)
+    expect(bus.count(PERMIT) > 500, *guard.lines)
     expect(guard.end()[0] == 0, *guard.lines)
     board.end()
 
