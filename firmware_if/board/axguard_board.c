@@ -13,8 +13,13 @@
 
 uint64_t axg_board_extend_us(uint64_t last_us, uint32_t timer_us) {
     const uint32_t low = (uint32_t)(last_us & 0xFFFFFFFFU);
-    const uint32_t passed = timer_us - low;  // modulo 2^32, as the timer
-    return last_us + passed;
+    const uint32_t passed = timer_us - low;   // modulo 2^32, as the timer
+    const uint32_t missing = low - timer_us;  // the same the other way round
+    uint64_t at_us = last_us + passed;
+    if ((passed > missing) && (last_us >= missing)) {
+        at_us = last_us - missing;
+    }
+    return at_us;
 }
 
 uint32_t axg_board_number_of(const axg_board_sample* sample) {
@@ -78,6 +83,7 @@ void axg_board_forget(axg_board* board) {
     board->has_plain = false;
     board->has_end = false;
     board->has_used = false;
+    board->permits_in_a_row = 0U;
     board->forgotten_us = board->now_us;
     board->last.is_given = false;
     board->ordered.is_given = false;
@@ -135,7 +141,7 @@ axg_board_arming axg_board_arm(axg_board* board, uint32_t nonce, uint64_t now_us
         board->has_session_changed = true;
         board->phase = AXG_BOARD_ARMED;
         board->has_live = false;
-        board->permits_in_a_row = 0U;
+        board->has_reference = false;  // with another nonce numbers may come again
         board->is_admitted = false;
         board->has_moved = false;
         board->tool = AXG_BOARD_TOOL_STAYS;
@@ -147,12 +153,12 @@ axg_board_arming axg_board_arm(axg_board* board, uint32_t nonce, uint64_t now_us
     return done;
 }
 
+// A stamp is no time of a call: a wrong one would move the clock, and no end would pass any more.
 bool axg_board_latch(axg_board* board, const axg_board_sample* sample) {
     const bool is_sync = (sample->sync >= 1U) && (sample->sync <= AXG_BOARD_SYNC_MAX);
     const uint32_t number = axg_board_number_of(sample);
     bool is_next = is_sync;
-    axg_board_observe(board, sample->latched_us);
-    if (is_sync && board->has_newest) {
+    if (is_sync && board->has_reference) {
         const uint32_t step = axg_board_samples_from(axg_board_number_of(&board->newest), number);
         is_next = (step >= 1U) && (step < (AXG_BOARD_SAMPLE_NUMBERS / 2U)) &&
                   (sample->latched_us > board->newest.latched_us);
@@ -163,6 +169,7 @@ bool axg_board_latch(axg_board* board, const axg_board_sample* sample) {
             board->has_session_changed || !board->has_newest || (sample->lap != board->newest.lap);
         board->newest = *sample;
         board->has_newest = true;
+        board->has_reference = true;
         board->newest_record = (uint8_t)(number % AXG_BOARD_RECORDS);
         record->sample = *sample;
         axg_board_open_record(board, record);
@@ -276,11 +283,11 @@ bool axg_board_announce_tool(axg_board* board) {
 }
 
 bool axg_board_may_change_tool(axg_board* board, uint64_t now_us) {
-    axg_board_observe(board, now_us);
+    const axg_board_motion motion = axg_board_may_move(board, now_us);
     const uint64_t horizon_us =
         axg_board_horizon_us(&board->options, board->options.permit_samples_max);
-    return (board->phase == AXG_BOARD_ARMED) && (board->tool == AXG_BOARD_TOOL_ANNOUNCED) &&
-           ((board->now_us - board->tool_us) >= horizon_us);
+    return motion.may_move && (board->tool == AXG_BOARD_TOOL_ANNOUNCED) &&
+           (board->now_us >= board->tool_us) && ((board->now_us - board->tool_us) >= horizon_us);
 }
 
 void axg_board_end_tool(axg_board* board) {

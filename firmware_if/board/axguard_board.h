@@ -89,7 +89,7 @@ typedef enum axg_board_refusal {
     AXG_BOARD_REFUSED_TWIN_DIFFERS,  // not every bit inverted
     AXG_BOARD_REFUSED_WORD,          // no permit word
     AXG_BOARD_REFUSED_STOPPED,       // only a person ends a stop
-    AXG_BOARD_REFUSED_ECHO,          // no such sample in the records
+    AXG_BOARD_REFUSED_ECHO,          // no such sample in the records, or stamped after now
     AXG_BOARD_REFUSED_ANSWER,        // wrong for this nonce, or for the lap of the record
     AXG_BOARD_REFUSED_LIVE,          // 0 or more than 15 ahead, or the first after arming
     AXG_BOARD_REFUSED_VALUE,         // a cap above 250, or a level above 3
@@ -156,7 +156,7 @@ typedef enum axg_board_tool {
 // State, about 1,000 bytes; only the library writes it. Zeroed memory is stopped.
 typedef struct axg_board {
     axg_board_options options;
-    uint64_t now_us;        // the latest time passed to a call
+    uint64_t now_us;        // the latest time passed to a call; stamps are none
     uint64_t forgotten_us;  // earlier samples do not permit motion
     bool is_ready;
     axg_board_phase phase;
@@ -172,6 +172,7 @@ typedef struct axg_board {
     axg_board_record records[AXG_BOARD_RECORDS];
     axg_board_sample newest;
     bool has_newest;
+    bool has_reference;  // the next number and stamp have to be after those of `newest`
     uint8_t newest_record;
     uint32_t used_sample;  // the newest echo of a usable permit
     bool has_used;
@@ -207,8 +208,9 @@ typedef struct axg_board {
 
 // --- Time and power-up -----------------------------------------------------------------------
 
-// The 64-bit instant of a reading of a free-running 32-bit timer of 1 us.
-// @param last_us  the instant before; at most 71 minutes ago
+// The 64-bit instant of a reading of a free-running 32-bit timer of 1 us: the nearest one. So a
+// capture may be extended with a time read after it.
+// @param last_us  an instant at most 35 minutes before or after the reading
 uint64_t axg_board_extend_us(uint64_t last_us, uint32_t timer_us);
 
 // Initializes without permission to move. The nonce has to differ from that of the last power-up.
@@ -231,9 +233,10 @@ axg_board_arming axg_board_arm(axg_board* board, uint32_t nonce, uint64_t now_us
 // --- In every period -------------------------------------------------------------------------
 
 // Reports that the board latched its positions. Call it before encoding the sample's frames, and
-// before axg_board_keeps with a later time: an older stamp counts as a sample at rapid.
-// @return  false: number or time do not follow the last sample; all permits and records are
-//     discarded, and a board in motion is stopped
+// before axg_board_keeps with a later time: an older stamp counts as a sample at rapid. A sample
+// stamped after the time of a later call permits nothing in it.
+// @return  false: number or time do not follow the last sample in order since arming; all permits
+//     and records are discarded, and a board in motion is stopped
 bool axg_board_latch(axg_board* board, const axg_board_sample* sample);
 
 // Processes a received data frame with an 11-bit id; do not pass extended, remote or error frames.
@@ -275,7 +278,8 @@ void axg_board_change(axg_board* board, bool is_jog, uint64_t now_us);
 // Announces a tool change in the samples from the next latch on.
 // @return  false: cancelled by a stop; arm first
 bool axg_board_announce_tool(axg_board* board);
-// Whether it may start: H(n_max) after the first announcing sample, and no stop since.
+// Whether it may start: H(n_max) after the first announcing sample, no stop since, and axes might
+// move.
 bool axg_board_may_change_tool(axg_board* board, uint64_t now_us);
 // Ends or abandons it. Call axg_board_change afterwards if the tool is another one.
 void axg_board_end_tool(axg_board* board);

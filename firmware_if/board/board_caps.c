@@ -94,20 +94,28 @@ static void axg_board_raise(axg_board* board, uint32_t group, uint8_t cap) {
     axg_board_take_ack(board, &board->last);  // at once: the one before orders less than is kept
 }
 
+// Of a group without an axis nothing is kept: it is never what an acknowledgement waits for.
+static uint8_t axg_board_wanted(const axg_board* board, const axg_board_caps* wanted,
+                                uint32_t group) {
+    return (group < board->options.axis_count) ? wanted->of[group] : 0U;
+}
+
 axg_board_caps axg_board_keeps(axg_board* board, const axg_board_caps* wanted, uint64_t now_us) {
     axg_board_observe(board, now_us);
     if (board->options.cap_kind == AXG_BOARD_CAP_ENFORCED) {
         bool is_changed = false;
         for (uint32_t i = 0U; i < AXG_BOARD_CAP_GROUPS; ++i) {
-            if (wanted->of[i] < board->keeps.of[i]) {
-                board->keeps.of[i] = wanted->of[i];
+            const uint8_t cap = axg_board_wanted(board, wanted, i);
+            if (cap < board->keeps.of[i]) {
+                board->keeps.of[i] = cap;
                 is_changed = true;
             }
         }
         if (axg_board_may_rise(board)) {
             for (uint32_t i = 0U; i < AXG_BOARD_CAP_GROUPS; ++i) {
                 const uint8_t most = board->last.caps.of[i];
-                const uint8_t cap = (wanted->of[i] < most) ? wanted->of[i] : most;
+                const uint8_t asked = axg_board_wanted(board, wanted, i);
+                const uint8_t cap = (asked < most) ? asked : most;
                 if (cap > board->keeps.of[i]) {
                     axg_board_raise(board, i, cap);
                     is_changed = true;

@@ -13,7 +13,8 @@ static bool axg_board_is_word(uint8_t byte) {
            (byte == (uint8_t)AXG_BOARD_WORD_JOG) || (byte == (uint8_t)AXG_BOARD_WORD_STOP);
 }
 
-// The record of the newest sample with this SYNC counter, or null.
+// The record of the newest sample with this SYNC counter, or null. One that is stamped after now is
+// none: the end that follows from it could be as far away as its stamp is wrong.
 static const axg_board_record* axg_board_find(const axg_board* board, uint8_t echo) {
     const axg_board_record* found = NULL;
     if (board->has_newest && (echo >= 1U) && (echo <= AXG_BOARD_SYNC_MAX)) {
@@ -24,7 +25,8 @@ static const axg_board_record* axg_board_find(const axg_board* board, uint8_t ec
             ((newest + AXG_BOARD_SAMPLE_NUMBERS) - age) % AXG_BOARD_SAMPLE_NUMBERS;
         const axg_board_record* const record = &board->records[number % AXG_BOARD_RECORDS];
         if ((age < AXG_BOARD_RECORDS) && record->is_kept &&
-            (axg_board_number_of(&record->sample) == number)) {
+            (axg_board_number_of(&record->sample) == number) &&
+            (record->sample.latched_us <= board->now_us)) {
             found = record;
         }
     }

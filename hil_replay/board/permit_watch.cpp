@@ -79,7 +79,7 @@ void PermitWatch::power_up() noexcept {
     axg_board_options options{};
     options.period_us = layout_.sample_us;
     options.permit_samples_max = layout_.permit_samples.most;
-    options.axis_count = 1;
+    options.axis_count = AXG_BOARD_AXES_MAX;
     options.cap_kind = cap_ == CapPromise::none ? AXG_BOARD_CAP_IGNORED : AXG_BOARD_CAP_ENFORCED;
     options.permit_id = layout_.permit_id;
     options.stop_id = layout_.stop_id;

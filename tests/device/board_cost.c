@@ -120,9 +120,11 @@ int main(void) {
     }
     axg_mark_begin(1U);
     axg_mark_end();
+    board.options.axis_count = 8U;
     axg_mark_begin(9U);  // all eight bounds rise, in all records
     caps = axg_board_keeps(&board, &caps, sample.latched_us + 600U);
     axg_mark_end();
+    board.options.axis_count = 5U;
     axg_mark_begin(10U);
     (void)axg_board_encode_classical(&board, &says, positions, ids, frames);
     axg_mark_end();

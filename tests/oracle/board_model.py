@@ -27,6 +27,7 @@ class Board:
         self.good = (0 < step["period"] <= 100_000 and 1 <= step["n_max"] <= 15 and
                      1 <= step["axes"] <= 13 and step["nonce"] < 1 << 24)
         self.period, self.n_max = step["period"], step["n_max"]
+        self.axes = step["axes"]
         self.has_caps, self.asks_hashes = bool(step["caps"]), bool(step["hashes"])
         self.horizon = (101 * self.n_max * self.period + 99) // 100 + step["jitter"] + \
             step["reaction"]
@@ -38,6 +39,7 @@ class Board:
         self.bounds = [[0 if self.has_caps else 250] * 8]  # every u there ever was
         self.changed_at = 0
         self.samples, self.newest = {}, None
+        self.reference = None  # what the next number and stamp have to be after
         self.permits, self.ordered, self.named = [], None, None
         self.row, self.admitted = 0, False
         self.hashes, self.tool = set(), None
@@ -51,7 +53,7 @@ class Board:
         self.plain, self.permits, self.ordered, self.named = None, [], None, None
         self.samples = {}
         self.used, self.last_named = None, 0
-        self.forgotten = self.now
+        self.forgotten, self.row = self.now, 0
 
     def halt(self, cause):
         if self.armed:
@@ -98,7 +100,7 @@ class Board:
         if crc16(nonce.to_bytes(3, "little")) == crc16(self.nonce.to_bytes(3, "little")):
             return "nonce_again"
         self.forget()
-        self.nonce, self.armed, self.live, self.row = nonce, True, None, 0
+        self.nonce, self.armed, self.live, self.reference = nonce, True, None, None
         self.admitted, self.moved, self.tool = False, False, None
         if self.has_caps:
             self.bounds.append([0] * 8)
@@ -106,12 +108,12 @@ class Board:
         return "done"
 
     def latch(self, at, sync, lap):
-        self.see(at)
+        """A stamp is no time of a call, and not seen as one."""
         number = lap * 240 + sync - 1
         good = 1 <= sync <= 240
-        if good and self.newest is not None:
-            ahead = (number - self.newest["number"]) % NUMBERS
-            good = 1 <= ahead < NUMBERS // 2 and at > self.newest["at"]
+        if good and self.reference is not None:
+            ahead = (number - self.reference["number"]) % NUMBERS
+            good = 1 <= ahead < NUMBERS // 2 and at > self.reference["at"]
         if not good:
             self.forget()
             self.newest = None
@@ -129,6 +131,7 @@ class Board:
             self.last_named = ack["order"]
         self.newest = {"number": number, "at": at, "lap": lap, "sync": sync, "ack": ack,
                        "bound": len(self.bounds) - 1, "unknown": at < self.changed_at}
+        self.reference = self.newest
         if at >= self.forgotten:
             self.samples[number] = self.newest
         else:
@@ -207,6 +210,8 @@ class Board:
             age = (self.newest["sync"] - echo) % 240
             if age < 16:
                 sample = self.samples.get((self.newest["number"] - age) % NUMBERS)
+            if sample is not None and sample["at"] > self.now:
+                sample = None
         if word == STOP:
             if sample is not None and self.is_right(data, sample):
                 self.live = live
@@ -285,6 +290,7 @@ class Board:
         self.see(at)
         if not self.has_caps:
             return [250] * 8
+        wanted = [wanted[i] if i < self.axes else 0 for i in GROUPS]
         bound = [min(wanted[i], self.bounds[-1][i]) for i in GROUPS]
         if bound != self.bounds[-1]:
             self.changed_at = self.now
@@ -324,9 +330,8 @@ class Board:
         return int(let)
 
     def may_tool(self, at):
-        self.see(at)
-        return int(self.armed and isinstance(self.tool, int) and
-                   self.now - self.tool >= self.horizon)
+        may = self.may_move(at)[0] != 0
+        return int(may and isinstance(self.tool, int) and self.now - self.tool >= self.horizon)
 
     def end_tool(self):
         if self.tool != "cancelled":

@@ -120,8 +120,7 @@ class Drawn:
             at = base + index * period
             number = (number + 1) % (240 * 65536)
             if dice.random() > 0.02:
-                self.step("latch", at=at + dice.randint(0, 20), sync=number % 240 + 1,
-                          lap=number // 240)
+                self.latch(number, at + dice.randint(0, 20), period)
             live = (live + (1 if dice.random() > 0.02 else dice.randint(0, 20))) % 256
             data = self.pair(number if dice.random() > 0.03 else max(0, number - 3), live)
             sent = at + dice.randint(50, period - 60)
@@ -133,6 +132,15 @@ class Drawn:
                 waiting.append((sent, 0x001, []))
             waiting.sort(key=lambda one: one[0])
             self.run_period(at, period, waiting, loss)
+
+    def latch(self, number, at, period):
+        """Now and then stamped ahead of the time, or with a number of before."""
+        dice, chance = self.dice, self.dice.random()
+        if chance < 0.01:
+            at += dice.choice([dice.randint(0, 3 * period), 3_600_000_000])
+        elif chance < 0.02:
+            number = (number - dice.randint(0, 30)) % (240 * 65536)
+        self.step("latch", at=at, sync=number % 240 + 1, lap=number // 240)
 
     def send(self, waiting, at, data, period):
         late = 0 if self.dice.random() > 0.05 else self.dice.randint(0, 18 * period)

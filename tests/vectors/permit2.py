@@ -153,6 +153,33 @@ def scripts_of_the_echo():
     one = script("a latch that is dated backwards", "its time is not after the last one's")
     one.begin().latch(4, at=Script.instant(3), want=0)
     one.step("cause", want="latch_order", phase="stopped")
+    one = script("a number comes only once", "until a person arms, with another nonce")
+    one.begin(first=30).latch(30, at=Script.instant(34), want=0)
+    at = Script.instant(40)
+    one.step("cause", want="latch_order", phase="stopped").moves(Script.instant(34) + 100, 0,
+                                                                "stopped")
+    for number in (29, 30, 33):  # what came once, or is before it
+        one.latch(number, at=at + number, want=0)
+    one.latch(34, at=Script.instant(33), want=0).latch(34, at=at + 100)
+    one.arm(Script.instant(60), 0x00BEEF).latch(30, at=Script.instant(60) + 1)
+    one.permit(30, Script.instant(60) + 2, want="refused", why="live")
+
+    one = script("a sample that is stamped ahead permits nothing yet", "a stamp is no clock")
+    one.begin().latch(4, at=Script.instant(4) + 600)
+    one.permit(4, Script.instant(4) + 300, want="refused", why="echo")
+    one.permit(4, Script.instant(4) + 580, live=5, want="refused", why="echo", twin_at=Script.
+               instant(4) + 599)
+    one.permit(4, Script.instant(4) + 590, live=6, twin_at=Script.instant(4) + 600)
+    one.may_move(Script.instant(4) + 700, Script.instant(4) + 600 + 10 * T)
+
+    one = script("a stamp an hour ahead", "time goes on as it is told: the end passes, and latches")
+    hour = 3_600_000_000
+    one.begin().moves(Script.instant(3) + 550, 0).latch(4, at=Script.instant(4) + hour)
+    one.permit(4, Script.instant(4) + 100, want="refused", why="echo")
+    one.may_move(Script.instant(13) + 1).latch(5, want=0)
+    one.permit(5, Script.instant(5) + 100, live=6, want="refused", why="echo")
+    one.may_move(Script.instant(14))
+
     one = script("a latch without a counter", "SYNC counts from 1 to 240")
     one.power_up().step("latch", at=10, sync=0, lap=0, want=0)
     one.step("latch", at=20, sync=241, lap=0, want=0)
@@ -281,6 +308,18 @@ def scripts_of_values():
     one.permit(4, at + 200, level=4, want="refused", why="value")
     one.permit(4, at + 300, word=SLOW, level=3).may_move(at + 400, at + 10 * T, SLOW)
 
+    one = script("a change begins the row anew", "three in a row before the first motion")
+    one.power_up().arm(50_000)
+    for number in range(3):
+        one.latch(number)
+        one.permit(number, Script.instant(number) + 400, want="permit" if number else "refused",
+                   why="nothing" if number else "live")
+    one.step("change", at=Script.instant(2) + 500, jog=0)
+    for number in range(3, 6):
+        one.latch(number).may_move(Script.instant(number) + 100)
+        one.permit(number, Script.instant(number) + 400)
+    one.may_move(Script.instant(5) + 500, Script.instant(5) + 10 * T)
+
     one = script("jog for jog alone", "and run is not for a jog")
     one.begin().latch(4).permit(4, at + 100, word=JOG, want="refused", why="jog")
     one.moves(at + 200, 0).step("change", at=at + 300, jog=1).may_move(at + 300)
@@ -374,6 +413,19 @@ def scripts_of_tools():
     one.step("may_tool", at=begins - 1, want=0).step("may_tool", at=begins, want=1)
     one.step("end_tool").step("may_tool", at=begins, want=0)
 
+    one = script("no tool change without a permit", "it is a motion like any other")
+    one.power_up().arm(50_000).step("announce", want=1).latch(0)
+    one.step("may_tool", at=Script.instant(40), want=0)
+    for number in range(41, 45):  # the fourth pair is the third that is used
+        one.latch(number)
+        one.step("may_tool", at=Script.instant(number) + 300, want=0)
+        one.permit(number, Script.instant(number) + 400,
+                   want="refused" if number == 41 else "permit",
+                   why="live" if number == 41 else "nothing")
+    one.step("may_tool", at=Script.instant(44) + 500, want=1)
+    one.step("change", at=Script.instant(44) + 600, jog=0)
+    one.step("may_tool", at=Script.instant(44) + 700, want=0)
+
     for name, kill in [("a stop frame", True), ("an end that passed", False)]:
         one = script("a tool change is cancelled by " + name, "until a person armed")
         one.begin().moves(Script.instant(3) + 600, 0).step("announce", want=1).latch(4)
@@ -389,83 +441,100 @@ def caps(*values):
     return hexed(values[:1] * 8 if len(values) == 1 else values)
 
 
+def kept(*values):
+    """Bounds that hold on a board of five axes: nothing is kept of a group without one."""
+    return hexed([*(values[:1] * 8 if len(values) == 1 else values)][:5] + [0] * 3)
+
+
 def scripts_of_caps():
     start = Script.instant(3)
     one = script("a cap is kept, acknowledged and raised", "rules (i) and (ii)")
     one.begin(caps=1)
     one.step("flags_of", mode=1, want=0x34)
-    one.step("keeps", at=start + 550, wanted=caps(250), want=caps(250))
+    one.step("keeps", at=start + 550, wanted=caps(250), want=kept(250))
     one.latch(4).step("flags_of", mode=1, want=0x44)
     one.step("flags_of", mode=3, want=0x00)
     one.permit(4, Script.instant(4) + 100, cap=60, mask=6)
     one.latch(5).step("flags_of", mode=1, want=0x44)  # it still slows down
     slow = (250, 60, 60, 250, 250, 250, 250, 250)
-    one.step("keeps", at=Script.instant(5) + 100, wanted=caps(*slow), want=caps(*slow))
+    one.step("keeps", at=Script.instant(5) + 100, wanted=caps(*slow), want=kept(*slow))
     one.latch(6).step("flags_of", mode=1, want=0x54)
-    one.step("keeps", at=Script.instant(6) + 100, wanted=caps(250), want=caps(*slow))
+    one.step("keeps", at=Script.instant(6) + 100, wanted=caps(250), want=kept(*slow))
     one.permit(6, Script.instant(6) + 200, cap=80, mask=2)
     one.step("keeps", at=Script.instant(6) + 300, wanted=caps(250),
-             want=caps(250, 80, 250, 250, 250, 250, 250, 250))
+             want=kept(250, 80, 250, 250, 250, 250, 250, 250))
     one.latch(7).step("flags_of", mode=1, want=0x64)
 
     one = script("a permit whose sample was faster than its proof", "rule (iii), a late order")
     one.begin(caps=1)
-    one.step("keeps", at=start + 550, wanted=caps(20), want=caps(20)).latch(4)
+    one.step("keeps", at=start + 550, wanted=caps(20), want=kept(20)).latch(4)
     one.permit(4, Script.instant(4) + 100, cap=20, mask=255).latch(5)  # acked: 20
     one.latch(6)
     one.step("flags_of", mode=1, want=0x54)
     one.permit(6, Script.instant(6) + 100, cap=100, mask=255)
-    one.step("keeps", at=Script.instant(6) + 200, wanted=caps(100), want=caps(100))
-    one.step("keeps", at=Script.instant(6) + 300, wanted=caps(10), want=caps(10))
+    one.step("keeps", at=Script.instant(6) + 200, wanted=caps(100), want=kept(100))
+    one.step("keeps", at=Script.instant(6) + 300, wanted=caps(10), want=kept(10))
     one.permit(6, Script.instant(6) + 400, cap=20, mask=255, n=12, want="refused", why="cap")
     one.may_move(Script.instant(6) + 450, Script.instant(6) + 10 * T)
     one.latch(7).permit(7, Script.instant(7) + 100, cap=20, mask=255)
 
     one = script("no raise on a permit that was refused for a cap", "rule (ii)")
     one.begin(caps=1)
-    one.step("keeps", at=start + 550, wanted=caps(50), want=caps(50))
+    one.step("keeps", at=start + 550, wanted=caps(50), want=kept(50))
     one.latch(4).permit(4, Script.instant(4) + 100, cap=50, mask=255).latch(5)
     one.latch(6).permit(6, Script.instant(6) + 100, cap=90, mask=255)
-    one.step("keeps", at=Script.instant(6) + 200, wanted=caps(90), want=caps(90))
-    one.step("keeps", at=Script.instant(6) + 250, wanted=caps(40), want=caps(40))
+    one.step("keeps", at=Script.instant(6) + 200, wanted=caps(90), want=kept(90))
+    one.step("keeps", at=Script.instant(6) + 250, wanted=caps(40), want=kept(40))
     # Axis 0 was at 90 since sample 6, and this proof knows 50 of it. Samples may have named it, so
     # a raise on the permit before it would name an older one again.
     one.permit(6, Script.instant(6) + 300, cap=50, mask=1, n=12, want="refused", why="cap")
     one.latch(7).step("flags_of", mode=1, want=0x74)
-    one.step("keeps", at=Script.instant(7) + 50, wanted=caps(40, *[250] * 7), want=caps(40))
+    one.step("keeps", at=Script.instant(7) + 50, wanted=caps(40, *[250] * 7), want=kept(40))
     one.permit(7, Script.instant(7) + 100, cap=90, mask=254)
     one.step("keeps", at=Script.instant(7) + 200, wanted=caps(40, *[250] * 7),
-             want=caps(40, *[90] * 7))
+             want=kept(40, *[90] * 7))
 
     one = script("a raise waits for the end in force", "rule (iv): it shortens nothing")
     one.begin(caps=1, n=15)
-    one.step("keeps", at=start + 550, wanted=caps(30), want=caps(30)).latch(4)
+    one.step("keeps", at=start + 550, wanted=caps(30), want=kept(30)).latch(4)
     one.permit(4, Script.instant(4) + 100, n=15, cap=30, mask=255).latch(5)
     one.permit(5, Script.instant(5) + 100, n=3, cap=200, mask=255)
-    one.step("keeps", at=Script.instant(5) + 200, wanted=caps(200), want=caps(30))
+    one.step("keeps", at=Script.instant(5) + 200, wanted=caps(200), want=kept(30))
     one.may_move(Script.instant(5) + 300, Script.instant(4) + 15 * T).latch(6)
     one.permit(6, Script.instant(6) + 100, n=15, cap=200, mask=255)
-    one.step("keeps", at=Script.instant(6) + 200, wanted=caps(200), want=caps(200))
+    one.step("keeps", at=Script.instant(6) + 200, wanted=caps(200), want=kept(200))
 
     one = script("no axis rises while another has still to slow down", "rule (i): one ack for all")
     one.begin(caps=1)
-    one.step("keeps", at=start + 550, wanted=caps(20, *[250] * 7), want=caps(20, *[250] * 7))
+    one.step("keeps", at=start + 550, wanted=caps(20, *[250] * 7), want=kept(20, *[250] * 7))
     one.latch(4).permit(4, Script.instant(4) + 100, cap=40, mask=2)
-    one.step("keeps", at=Script.instant(4) + 200, wanted=caps(250), want=caps(20, *[250] * 7))
+    one.step("keeps", at=Script.instant(4) + 200, wanted=caps(250), want=kept(20, *[250] * 7))
     one.step("keeps", at=Script.instant(4) + 300, wanted=caps(250, 40, *[250] * 6),
-             want=caps(250, 40, *[250] * 6))
+             want=kept(250, 40, *[250] * 6))
+
+    one = script("groups without an axis", "what is handed in for them delays no acknowledgement")
+    one.begin(caps=1).latch(4).permit(4, Script.instant(4) + 100, cap=60, mask=255)
+    one.step("keeps", at=Script.instant(4) + 200, wanted=caps(*[60] * 5, *[250] * 3),
+             want=kept(60)).latch(5).step("flags_of", mode=1, want=0x54)
+
+    one = script("a raise above a stop", "stopped, u only falls")
+    one.begin(caps=1).latch(4).permit(4, Script.instant(4) + 100)
+    one.step("keeps", at=Script.instant(4) + 200, wanted=caps(90), want=kept(90))
+    one.frame(0x001, [], Script.instant(4) + 300, "stop")
+    one.step("keeps", at=Script.instant(4) + 400, wanted=caps(200), want=kept(90))
+    one.step("keeps", at=Script.instant(4) + 500, wanted=caps(80), want=kept(80))
 
     one = script("hold", "cap 0: it stands on its path, and permits go on")
     one.begin(caps=1).latch(4).permit(4, Script.instant(4) + 100, cap=0, mask=255)
-    one.step("keeps", at=Script.instant(4) + 200, wanted=caps(250), want=caps(0))
+    one.step("keeps", at=Script.instant(4) + 200, wanted=caps(250), want=kept(0))
     one.latch(5).step("flags_of", mode=1, want=0x54)
     one.may_move(Script.instant(5) + 100, Script.instant(4) + 10 * T)
 
     one = script("a stamp from before the bound fell", "what it was then is not known: rapid")
     one.begin(caps=1)
-    one.step("keeps", at=start + 550, wanted=caps(250), want=caps(250)).latch(4)
+    one.step("keeps", at=start + 550, wanted=caps(250), want=kept(250)).latch(4)
     one.permit(4, Script.instant(4) + 100, cap=30, mask=255)
-    one.step("keeps", at=Script.instant(4) + 200, wanted=caps(30), want=caps(30))
+    one.step("keeps", at=Script.instant(4) + 200, wanted=caps(30), want=kept(30))
     one.latch(5, at=Script.instant(4) + 199).permit(5, Script.instant(5) + 100, cap=30, mask=255,
                                                     want="refused", why="cap")
 

@@ -11,7 +11,11 @@ def scripts_of_small_frames():
     one.step("sync", sync=42, want="2A").step("heartbeat", state=127, want="7F")
     one.step("extend", last=100, timer=100, want=100)
     one.step("extend", last=4_294_967_290, timer=5, want=4_294_967_301)
-    one.step("extend", last=8_589_934_592, timer=4_294_967_295, want=12_884_901_887)
+    one.step("extend", last=8_589_934_592, timer=4_294_967_295, want=8_589_934_591)
+    one.step("extend", last=5_000_000_100, timer=705_032_794, want=5_000_000_090)  # a capture
+    one.step("extend", last=5_000_000_100, timer=2_852_516_451, want=7_147_483_747)
+    one.step("extend", last=5_000_000_100, timer=2_852_516_453, want=2_852_516_453)
+    one.step("extend", last=3, timer=4_294_967_295, want=4_294_967_295)  # nothing is before 0
 
 
 def sealed(identifier, body):
@@ -59,8 +63,8 @@ def scripts_of_frames():
     one.step("session", at=at + 1000, want=hexed(session(1, 4, 0x00BEEF, 2)))
     one.latch(0, at=at + 2000, want=0)  # a lap that begins anew is out of order
     one.step("session_due", at=at + 200_000, want=0).step("session", at=at + 200_000, want="")
-    one.latch(0, at=at + 200_001).step("session_due", at=at + 200_001, want=1)
-    one.step("session", at=at + 200_001, want=hexed(session(1, 0, 0x00BEEF, 3)))
+    one.latch(4 * 240 + 1, at=at + 200_001).step("session_due", at=at + 200_001, want=1)
+    one.step("session", at=at + 200_001, want=hexed(session(2, 4, 0x00BEEF, 3)))
 
     says = {"mode": 1, "tool": 0x0102, "homed": 1, "spindle": 0, "rapid": 0, "down": 0, "axis": 0}
     counts = [100_000, -50_500, -300_000, 2_712_500, 3_600_001]
