@@ -10,9 +10,12 @@
 #include "core/base/sincos.hpp"
 #include "firmware_if/protocol/e2e.hpp"
 #include "firmware_if/protocol/permit2_frames.hpp"
+#include "tests/support/frame_bytes.hpp"
 
 namespace axg {
 namespace {
+
+using test::bytes_of;
 
 Machine five_axes(CanFormat format) {
     Machine machine;
@@ -42,9 +45,6 @@ AxisSnapshot sample_snapshot() {
 }
 
 using Bytes = std::vector<std::uint8_t>;
-Bytes bytes_of(const CanFrame& frame) {
-    return {frame.data.begin(), frame.data.begin() + frame.length_bytes};
-}
 
 TEST(AxisEncoder, ClassicalFramesAreTheDocumentedBytes) {
     const Machine machine = five_axes(CanFormat::classical);

@@ -7,15 +7,15 @@
 #include <bit>
 #include <cmath>
 
+#include "tests/support/frame_bytes.hpp"
+
 namespace axg {
 namespace {
 
+using test::bytes_of;
+
 const CanLayout kLayout;
 const Permit kPermit{PermitWord::run, 20, 7, 0xBEEF, 125, 3, 42};
-
-std::vector<std::uint8_t> bytes_of(const CanFrame& frame) {
-    return {frame.data.begin(), frame.data.begin() + frame.length_bytes};
-}
 
 TEST(PermitWord, AnyTwoDifferInFourBitsAndNoneIsZero) {
     const unsigned words[] = {0xA5, 0xC3, 0x5A, 0x3C};

@@ -28,8 +28,8 @@ PathPoints points_at(const Machine& machine, std::uint64_t k) {
     return points;
 }
 
-std::vector<CanFrame> encoded(AxisEncoder& encoder, const AxisSnapshot& snapshot,
-                              const PathPoints& points) {
+std::vector<CanFrame> encoded_sample(AxisEncoder& encoder, const AxisSnapshot& snapshot,
+                                     const PathPoints& points) {
     std::vector<CanFrame> frames(kFramesPerSnapshotMax);
     const EncodeResult result = encoder.encode(snapshot, frames, &points);
     EXPECT_EQ(result.status, EncodeStatus::ok);
@@ -48,7 +48,8 @@ struct LookAheadFixture {
     LookAheadFixture() {
         AxisEncoder encoder(machine);
         for (std::uint64_t k = 0; k < 60; ++k) {
-            samples.push_back(encoded(encoder, snapshot_at(machine, k), points_at(machine, k)));
+            samples.push_back(
+                encoded_sample(encoder, snapshot_at(machine, k), points_at(machine, k)));
         }
     }
     void hear() {
@@ -89,7 +90,7 @@ TEST(LookAheadFrame, ByteByByte) {
     PathPoints points = points_at(machine, 6);
     points.position = {1.5, -0.0001, 0, kPi / 180, -kPi / 2};
     points.before = {0.00005, 0, 300, 0, 4 * kPi + kPi / 2};
-    const CanFrame frame = encoded(encoder, snapshot, points)[kPlace];
+    const CanFrame frame = encoded_sample(encoder, snapshot, points)[kPlace];
     EXPECT_EQ(frame.id, 0x481U);
     EXPECT_TRUE(frame.fd && frame.bit_rate_switch);
     EXPECT_EQ(frame.length_bytes, 48);

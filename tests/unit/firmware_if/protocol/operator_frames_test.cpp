@@ -11,23 +11,16 @@
 #include <string>
 
 #include "firmware_if/protocol/e2e.hpp"
+#include "tests/support/frame_bytes.hpp"
 #include "tests/support/operator_panel.hpp"
 #include "tests/support/seed.hpp"
 
 namespace axg {
 namespace {
 
-const CanLayout kLayout;
+using test::hex_of;
 
-std::string hex_of(const CanFrame& frame) {
-    std::string text;
-    for (std::size_t i = 0; i < frame.length_bytes; ++i) {
-        char byte[3];
-        std::snprintf(byte, sizeof byte, "%02X", frame.data[i]);
-        text += byte;
-    }
-    return text;
-}
+const CanLayout kUsualLayout;
 
 TEST(OperatorFrames, TheStatusIsTheOneThatTheLibraryWrites) {
     for (unsigned phase = 0; phase < kGuardPhases; ++phase) {
@@ -36,7 +29,7 @@ TEST(OperatorFrames, TheStatusIsTheOneThatTheLibraryWrites) {
                 const auto counter = static_cast<std::uint8_t>((phase + refusal) & 15U);
                 const std::uint32_t nonce = 0x123456 + action;
                 const CanFrame made =
-                    encode_operator_status(kLayout,
+                    encode_operator_status(kUsualLayout,
                                            {.phase = static_cast<GuardPhase>(phase),
                                             .action = static_cast<OperatorAction>(action),
                                             .refusal = static_cast<OperatorRefusal>(refusal),
@@ -94,7 +87,8 @@ TEST(OperatorFrames, BothSidesTakeTheSameMessages) {
         axg_operator_message theirs{};
         OperatorMessage ours;
         const bool is_theirs = axg_operator_decode(&same, test::kOperatorIn, &theirs);
-        ASSERT_EQ(decode_operator_message(kLayout, frame, ours) == FrameStatus::ok, is_theirs) << i;
+        ASSERT_EQ(decode_operator_message(kUsualLayout, frame, ours) == FrameStatus::ok, is_theirs)
+            << i;
         if (is_theirs) {
             ++taken;
             ASSERT_EQ(static_cast<int>(ours.action), static_cast<int>(theirs.action));
@@ -111,12 +105,12 @@ TEST(OperatorFrames, WhatIsNotExactlyAMessageSaysHow) {
     test::OperatorPanel panel;
     const CanFrame good = panel.confirm(AXG_OPERATOR_ARM, 0x345678, 5);
     OperatorMessage message;
-    ASSERT_EQ(decode_operator_message(kLayout, good, message), FrameStatus::ok);
+    ASSERT_EQ(decode_operator_message(kUsualLayout, good, message), FrameStatus::ok);
     const auto status_of_altered = [&](const auto& alter) {
         CanFrame altered = good;
         alter(altered);
         OperatorMessage untouched{.nonce = 1};
-        const FrameStatus status = decode_operator_message(kLayout, altered, untouched);
+        const FrameStatus status = decode_operator_message(kUsualLayout, altered, untouched);
         EXPECT_EQ(untouched.nonce, 1U);
         return status;
     };
@@ -147,7 +141,7 @@ TEST(OperatorFrames, TheVectorsAreTheGuardsToo) {
             if (step["do"] == "status" && step["reads"] == 1) {
                 ++statuses;
                 const CanFrame made = encode_operator_status(
-                    kLayout,
+                    kUsualLayout,
                     {.phase = static_cast<GuardPhase>(step["phase"].get<int>()),
                      .action = static_cast<OperatorAction>(step["action"].get<int>()),
                      .refusal = static_cast<OperatorRefusal>(step["refusal"].get<int>()),
@@ -167,7 +161,7 @@ TEST(OperatorFrames, TheVectorsAreTheGuardsToo) {
                 }
                 OperatorMessage read;
                 const bool is_read =
-                    decode_operator_message(kLayout, frame, read) == FrameStatus::ok;
+                    decode_operator_message(kUsualLayout, frame, read) == FrameStatus::ok;
                 EXPECT_EQ(is_read, step["reads"] == 1) << text;
                 if (is_read) {
                     EXPECT_EQ(static_cast<int>(read.action), step["action"].get<int>());

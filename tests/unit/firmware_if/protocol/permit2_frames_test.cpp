@@ -10,19 +10,12 @@
 #include <string>
 
 #include "tests/support/board_fixture.hpp"
+#include "tests/support/frame_bytes.hpp"
 
 namespace axg {
 namespace {
 
-std::string hex_of(const CanFrame& frame) {
-    std::string text;
-    for (std::size_t i = 0; i < frame.length_bytes; ++i) {
-        char byte[3];
-        std::snprintf(byte, sizeof byte, "%02X", frame.data[i]);
-        text += byte;
-    }
-    return text;
-}
+using test::hex_of;
 
 CanFrame frame_of(const axg_board_can_frame& made) {
     CanFrame frame;
