@@ -19,7 +19,7 @@ namespace axg {
 namespace {
 
 // At 10 m/min and a sample every 10 ms the cutter moves 1.7 mm a sample, and it is 0.2 mm long.
-constexpr const char* kMachine = R"(version: 1
+constexpr const char* kRoomMachine = R"(version: 1
 name: nest
 axes:
   X: {kind: linear, travel_mm: [-300, 300], speed_mm_min: 10000, acceleration_mm_s2: 2000,
@@ -52,7 +52,7 @@ class ContainedReplay : public testing::Test {
     void write_machine(const test::Triangles& block, const std::string& allow = "") {
         const std::vector<std::byte> bytes = write_stl(block);
         (void)shop.write("block.stl", {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-        std::string text = kMachine;
+        std::string text = kRoomMachine;
         (void)shop.write("m.yaml", text.replace(text.find("@ALLOW@"), 7, allow));
     }
     void simulate(const std::string& program, const std::string& options = "") {

@@ -25,7 +25,7 @@
 namespace axg {
 namespace {
 
-const std::string kMachine =
+const std::string kProbeBasic =
     std::string(AXG_SOURCE_DIR) + "/config/machines/probe-basic-xyzac.yaml";
 const std::string kMeshes = std::string(AXG_SHARED_DATA) + "/machines/probe-basic-xyzac";
 const std::string kPrograms = std::string(AXG_SHARED_DATA) + "/gcode/";
@@ -40,7 +40,7 @@ class ProbeBasic : public testing::Test {
         if (!std::filesystem::exists(kMeshes)) {
             GTEST_SKIP() << "no " << kMeshes << ": set AXG_SHARED_DATA";
         }
-        ASSERT_TRUE(load(kMachine, kMeshes, loaded, stderr));
+        ASSERT_TRUE(load(kProbeBasic, kMeshes, loaded, stderr));
         // Faces that coincide need many rechecks; with the file's capacity the result would be the
         // same, not proven, and the count cut short.
         loaded.machine.capacities.rechecks = 1U << 20U;
@@ -172,9 +172,10 @@ TEST_P(ProbeBasicProgram, EndsAsExpected) {
         return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     };
     EXPECT_EQ(
-        run("simulate " + kMachine + " " + program + " -o " + trace + " " + GetParam().options), 0);
+        run("simulate " + kProbeBasic + " " + program + " -o " + trace + " " + GetParam().options),
+        0);
     // The deadline is not the point here: a shared machine may be late.
-    EXPECT_EQ(run("replay " + kMachine + " " + trace + " --mesh-root " + kMeshes +
+    EXPECT_EQ(run("replay " + kProbeBasic + " " + trace + " --mesh-root " + kMeshes +
                   " --mode contact --deadline-us 10000000"),
               GetParam().exit_code);
     std::filesystem::remove(trace);

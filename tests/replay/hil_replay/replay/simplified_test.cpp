@@ -19,7 +19,7 @@ using nlohmann::json;
 constexpr double kDeviationMm = 0.3;
 
 /// A ball of 4,800 triangles that the cutter comes down on, and then would be inside of.
-constexpr const char* kMachine = R"(version: 1
+constexpr const char* kBallMachine = R"(version: 1
 name: ball
 axes:
   Z: {kind: linear, travel_mm: [-200, 200], speed_mm_min: 10000, acceleration_mm_s2: 2000,
@@ -47,7 +47,7 @@ class Simplified : public testing::Test {
     }
     void write(const std::string& name, const std::string& key,
                const std::string& ball_at = "-100") const {
-        std::string text = kMachine;
+        std::string text = kBallMachine;
         text.replace(text.find("@AT@"), 4, ball_at);
         (void)shop_.write(name, text.replace(text.find("@SIMPLIFY@"), 10, key));
     }

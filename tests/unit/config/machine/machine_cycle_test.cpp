@@ -21,7 +21,7 @@ std::string faults_of(const std::string& section) {
     return all;
 }
 
-Machine loaded(const std::string& section) {
+Machine loaded_with(const std::string& section) {
     Machine machine;
     EXPECT_TRUE(parse_machine(kSmallMachine + section, "m", machine).empty()) << section;
     return machine;
@@ -29,7 +29,7 @@ Machine loaded(const std::string& section) {
 
 TEST(MachineCycle, WithoutAWordAndWithAutoItIsTheUsualPlan) {
     for (const char* section : {"", "cycle: auto\n"}) {
-        const Machine machine = loaded(section);
+        const Machine machine = loaded_with(section);
         EXPECT_EQ(machine.cycle, CycleRules{});
         const CyclePlan plan = default_plan(machine, 8);
         EXPECT_EQ(plan.stages, 3U);
@@ -43,14 +43,14 @@ TEST(MachineCycle, WithoutAWordAndWithAutoItIsTheUsualPlan) {
 }
 
 TEST(MachineCycle, EachKeyArrivesAndIsPartOfTheHash) {
-    const std::string usual = effective_text(loaded(""));
+    const std::string usual = effective_text(loaded_with(""));
     const auto changed = [&usual](const std::string& section) {
-        const Machine machine = loaded("cycle: " + section + "\n");
+        const Machine machine = loaded_with("cycle: " + section + "\n");
         EXPECT_NE(effective_text(machine), usual) << section;
         EXPECT_TRUE(machine.cycle.is_pinned);
         return default_plan(machine, 8);
     };
-    EXPECT_EQ(changed("{stages: 3}"), default_plan(loaded(""), 8)) << "pinned, and the same";
+    EXPECT_EQ(changed("{stages: 3}"), default_plan(loaded_with(""), 8)) << "pinned, and the same";
     EXPECT_EQ(changed("{stages: 2}").stages, 2U);
     EXPECT_EQ(changed("{queries: 256}").queries[2], 256U);
     EXPECT_EQ(lists_of(changed("{lists: {node_pairs: 8}}")).node_pairs, 8U);
@@ -61,7 +61,7 @@ TEST(MachineCycle, EachKeyArrivesAndIsPartOfTheHash) {
 }
 
 TEST(MachineCycle, APlanThatWasChosenGoesBeforeTheFile) {
-    Machine machine = loaded("cycle: {stages: 3}\n");
+    Machine machine = loaded_with("cycle: {stages: 3}\n");
     EXPECT_EQ(cycle_plan(machine, 8), default_plan(machine, 8));
     machine.plan = plan_of(2, 8, 100, {1, 2, 3, 4, 5});
     EXPECT_EQ(cycle_plan(machine, 8), *machine.plan);

@@ -16,7 +16,7 @@ namespace axg {
 namespace {
 
 /// Says far to margins up to `far_mm`, and counts.
-struct FakeEngine {
+struct MarginEngine {
     double far_mm = 0;
     QueryStatus otherwise = QueryStatus::ok;
     std::uint32_t batches = 0, queries = 0;
@@ -24,7 +24,7 @@ struct FakeEngine {
 
     static void run(void* self, std::span<const Query> queries,
                     std::span<QueryResult> results) noexcept {
-        FakeEngine& fake = *static_cast<FakeEngine*>(self);
+        MarginEngine& fake = *static_cast<MarginEngine*>(self);
         ++fake.batches;
         for (std::size_t i = 0; i < queries.size(); ++i) {
             ++fake.queries;
@@ -58,7 +58,7 @@ struct Slide {
         task.box.half[0] = 8;
         task.box.half[1] = 100;  // an axis that is not on the path
     }
-    JointBoxResult prove(FakeEngine& fake, JointBoxBudget budget) {
+    JointBoxResult prove(MarginEngine& fake, JointBoxBudget budget) {
         auto prover = JointBoxProver::create(machine, 1, budget);
         JointBoxResult result;
         prover->prove(fake.engine(), {&task, 1}, {&result, 1});
@@ -68,7 +68,7 @@ struct Slide {
 
 TEST(JointBoxProver, RunsOnceWhereOneQueryIsEnough) {
     Slide slide;
-    FakeEngine fake{.far_mm = 8.6};
+    MarginEngine fake{.far_mm = 8.6};
     const JointBoxResult result = slide.prove(fake, {.rounds = 1, .queries = 1});
     EXPECT_EQ(result.proof, JointBoxProof::proven);
     EXPECT_EQ(fake.queries, 1U);
@@ -80,7 +80,7 @@ TEST(JointBoxProver, QueriesInFloatAloneWhereThereAreNoRechecks) {
     for (const std::uint32_t rechecks : {0U, 4U, 1024U}) {
         Slide slide;
         slide.machine.cycle.lists.rechecks = rechecks;
-        FakeEngine fake{.far_mm = 1.6};
+        MarginEngine fake{.far_mm = 1.6};
         EXPECT_EQ(slide.prove(fake, {}).proof, JointBoxProof::proven);
         for (const Query& query : fake.seen) {
             EXPECT_EQ(query.is_float_only, rechecks == 0);
@@ -90,7 +90,7 @@ TEST(JointBoxProver, QueriesInFloatAloneWhereThereAreNoRechecks) {
 
 TEST(JointBoxProver, SplitsUntilTheMotionFits) {
     Slide slide;
-    FakeEngine fake{.far_mm = 1.6};  // 0.5 and at most 1.1: 8 -> 4 -> 2 -> 1
+    MarginEngine fake{.far_mm = 1.6};  // 0.5 and at most 1.1: 8 -> 4 -> 2 -> 1
     EXPECT_EQ(slide.prove(fake, {.rounds = 4, .queries = 15}).proof, JointBoxProof::proven);
     EXPECT_EQ(fake.queries, 15U);
     EXPECT_EQ(fake.batches, 4U);
@@ -101,7 +101,7 @@ TEST(JointBoxProver, NeverRunsMoreThanItsBudget) {
          {JointBoxBudget{.rounds = 3, .queries = 15}, JointBoxBudget{.rounds = 4, .queries = 14},
           JointBoxBudget{.rounds = 4, .queries = 1}}) {
         Slide slide;
-        FakeEngine fake{.far_mm = 1.6};
+        MarginEngine fake{.far_mm = 1.6};
         const JointBoxResult result = slide.prove(fake, budget);
         EXPECT_EQ(result.proof, JointBoxProof::budget_spent);
         EXPECT_LE(fake.queries, budget.queries);
@@ -114,7 +114,7 @@ TEST(JointBoxProver, NeverRunsMoreThanItsBudget) {
 // nothing, and its other half would be written past the list.
 TEST(JointBoxProver, ABoxIsSplitOnlyWhereBothHalvesHaveRoom) {
     Slide slide;
-    FakeEngine fake{.far_mm = 1.6};
+    MarginEngine fake{.far_mm = 1.6};
     const JointBoxResult result = slide.prove(fake, {.rounds = 7, .queries = 3});
     EXPECT_EQ(result.proof, JointBoxProof::budget_spent);
     EXPECT_EQ(fake.queries, 3U) << "the box and its halves, of which the first takes two places";
@@ -125,7 +125,7 @@ TEST(JointBoxProver, ABoxIsSplitOnlyWhereBothHalvesHaveRoom) {
 TEST(JointBoxProver, AnAxisOffThePathIsNeverSplit) {
     Slide slide;
     slide.task.box.half[0] = 0;
-    FakeEngine fake{.far_mm = 0.4};
+    MarginEngine fake{.far_mm = 0.4};
     const JointBoxResult result = slide.prove(fake, {});
     EXPECT_EQ(result.proof, JointBoxProof::budget_spent);
     EXPECT_EQ(fake.queries, 1U) << "nothing moves: splitting cannot help";
@@ -136,13 +136,13 @@ TEST(JointBoxProver, AFullListIsSplitAndABrokenEngineIsNot) {
          {QueryStatus::too_many_node_pairs, QueryStatus::too_many_triangle_pairs,
           QueryStatus::too_many_rechecks}) {
         Slide slide;
-        FakeEngine fake{.far_mm = 1.6, .otherwise = full};
+        MarginEngine fake{.far_mm = 1.6, .otherwise = full};
         EXPECT_EQ(slide.prove(fake, {.rounds = 4, .queries = 15}).proof, JointBoxProof::proven);
     }
     for (const QueryStatus broken :
          {QueryStatus::not_run, QueryStatus::bad_query, QueryStatus::bad_rounding}) {
         Slide slide;
-        FakeEngine fake{.far_mm = 1.6, .otherwise = broken};
+        MarginEngine fake{.far_mm = 1.6, .otherwise = broken};
         const JointBoxResult result = slide.prove(fake, {.rounds = 4, .queries = 15});
         EXPECT_EQ(result.proof, JointBoxProof::engine_failed);
         EXPECT_EQ(result.status, broken);
@@ -156,7 +156,7 @@ TEST(JointBoxProver, AnEngineThatFallsSilentHasProvenNothing) {
     for (const std::uint32_t mesh : {kNoIndex, 77U}) {  // without a known-answer test, and with one
         auto prover = JointBoxProver::create(slide.machine, 1, {.known_answer_mesh = mesh});
         JointBoxResult result;
-        FakeEngine fake{.far_mm = 8.6};
+        MarginEngine fake{.far_mm = 8.6};
         prover->prove(fake.engine(), {&slide.task, 1}, {&result, 1});
         ASSERT_EQ(result.proof, JointBoxProof::proven);
         const Engine silent{nullptr,
@@ -187,7 +187,7 @@ TEST(JointBoxProver, FarCountsOnlyWithTheStatusOk) {
 TEST(JointBoxProver, MotionsBeyondTheEnginesMarginAreSplitToo) {
     Slide slide;
     slide.task.box.half[0] = 4e4;
-    FakeEngine fake{.far_mm = 1e4, .otherwise = QueryStatus::bad_query};
+    MarginEngine fake{.far_mm = 1e4, .otherwise = QueryStatus::bad_query};
     EXPECT_EQ(slide.prove(fake, {.rounds = 4, .queries = 15}).proof, JointBoxProof::proven);
 }
 
@@ -297,7 +297,7 @@ TEST(JointBoxProver, RefusesBoxesThatAreNoBoxes) {
     for (const double bad : {kNan, kInfinity, -1.0, 1.1e5}) {
         Slide slide;
         slide.task.box.half[0] = bad;
-        FakeEngine fake{.far_mm = 1e9};
+        MarginEngine fake{.far_mm = 1e9};
         EXPECT_EQ(slide.prove(fake, {}).proof, JointBoxProof::bad_box) << bad;
         EXPECT_EQ(fake.queries, 0U);
         slide.task.box.half[0] = 1;
@@ -308,7 +308,7 @@ TEST(JointBoxProver, RefusesBoxesThatAreNoBoxes) {
 
 TEST(JointBoxProver, ATaskThatFailsLeavesTheOthersAlone) {
     Slide slide;
-    FakeEngine fake{.far_mm = 4.6};
+    MarginEngine fake{.far_mm = 4.6};
     auto prover = JointBoxProver::create(slide.machine, 3, {.rounds = 2, .queries = 9});
     std::vector<JointBoxTask> tasks(3, slide.task);
     tasks[0].margin_mm = 5;
@@ -485,7 +485,7 @@ TEST(JointBoxProver, HasTheLeversOfTheWholeBoxInEveryPart) {
     const PathLevers whole = links.levers(links.task.box);
     const PathLevers lower = links.levers(half_of(links.task.box, 1, false, links.task.box));
     EXPECT_GT(whole.mm[1], 1.5 * lower.mm[1]) << "the first joint's, the last on the path";
-    FakeEngine fake{.far_mm = -1};
+    MarginEngine fake{.far_mm = -1};
     auto prover = JointBoxProver::create(links.machine, 1, {.rounds = 6, .queries = 63});
     JointBoxResult result;
     prover->prove(fake.engine(), {&links.task, 1}, {&result, 1});
@@ -510,7 +510,7 @@ TEST(JointBoxProver, QueriesEveryPlaceOfAGridOnce) {
     slide.task.path = path_between(slide.machine, 2, 0);
     slide.task.box.centre = {3, -2};
     slide.task.box.half = {8, 8.5};
-    FakeEngine fake{.far_mm = -1};
+    MarginEngine fake{.far_mm = -1};
     slide.prove(fake, {.rounds = 7, .queries = 127});
     ASSERT_EQ(fake.queries, 127U);
     std::vector<std::array<double, 2>> places;

@@ -13,7 +13,7 @@
 namespace axg::test {
 namespace {
 
-constexpr std::uint32_t kZ = 2, kC = 4;
+constexpr std::uint32_t kAxisZ = 2, kAxisC = 4;
 constexpr double kPeriodS = 1e-3;
 constexpr double kLongestS = 1.01 * kPeriodS;
 
@@ -33,8 +33,8 @@ class LookAheadPathTest : public testing::Test {
     static PathPoints straight(std::uint64_t sample, double speed) {
         PathPoints points;
         points.sample = sample;
-        points.position[kZ] = -speed * kPeriodS * static_cast<double>(sample);
-        points.before[kZ] = -speed * kPeriodS * static_cast<double>(sample - 1);
+        points.position[kAxisZ] = -speed * kPeriodS * static_cast<double>(sample);
+        points.before[kAxisZ] = -speed * kPeriodS * static_cast<double>(sample - 1);
         return points;
     }
     void note_path(std::uint64_t from, std::uint64_t to, double speed) {
@@ -106,8 +106,8 @@ TEST_F(LookAheadPathTest, ThePathMustReachAsFarAsTheStop) {
 }
 
 TEST_F(LookAheadPathTest, ThePiecesCoverTheWayAndNoMore) {
-    m.axes[kZ].following_error = 0.02;
-    options.count[kZ] = 0.0001;
+    m.axes[kAxisZ].following_error = 0.02;
+    options.count[kAxisZ] = 0.0001;
     make();
     note_path(1, 300, 150);
     const PathStretch stretch = path->stretch(100, 5e-3);
@@ -115,21 +115,21 @@ TEST_F(LookAheadPathTest, ThePiecesCoverTheWayAndNoMore) {
     path->cut(100, stretch.end, pieces);
     const double bulge = 2000 * kLongestS * kLongestS / 8;
     const double wide = 0.02 + 0.00005 + bulge;
-    EXPECT_NEAR(pieces[0].centre[kZ] + pieces[0].half[kZ], -0.15 * 100 + wide, 1e-7);
-    EXPECT_NEAR(pieces[0].centre[kZ] - pieces[0].half[kZ], -0.15 * (100 + stretch.end) - wide,
-                1e-7);
+    EXPECT_NEAR(pieces[0].centre[kAxisZ] + pieces[0].half[kAxisZ], -0.15 * 100 + wide, 1e-7);
+    EXPECT_NEAR(pieces[0].centre[kAxisZ] - pieces[0].half[kAxisZ],
+                -0.15 * (100 + stretch.end) - wide, 1e-7);
     EXPECT_NEAR(pieces[0].half[0], bulge, 1e-7) << "an axis that stands: what it may bulge";
     for (std::uint32_t i = 0; i < kPathPieces / 2; ++i) {
         for (const std::uint32_t child : {2 * i + 1, 2 * i + 2}) {
-            EXPECT_GE(pieces[i].half[kZ] - pieces[child].half[kZ],
-                      std::abs(pieces[i].centre[kZ] - pieces[child].centre[kZ]) - 1e-12);
+            EXPECT_GE(pieces[i].half[kAxisZ] - pieces[child].half[kAxisZ],
+                      std::abs(pieces[i].centre[kAxisZ] - pieces[child].centre[kAxisZ]) - 1e-12);
         }
     }
     // The leaves follow each other without a hole, each a 64th of the way.
     for (std::uint32_t i = kPathLeaves - 1; i + 1 < kPathPieces; ++i) {
-        EXPECT_GE(pieces[i].half[kZ] + pieces[i + 1].half[kZ],
-                  std::abs(pieces[i].centre[kZ] - pieces[i + 1].centre[kZ]) + 2 * bulge);
-        EXPECT_NEAR(pieces[i].half[kZ], 0.5 * 0.15 * stretch.end / kPathLeaves + wide, 1e-7);
+        EXPECT_GE(pieces[i].half[kAxisZ] + pieces[i + 1].half[kAxisZ],
+                  std::abs(pieces[i].centre[kAxisZ] - pieces[i + 1].centre[kAxisZ]) + 2 * bulge);
+        EXPECT_NEAR(pieces[i].half[kAxisZ], 0.5 * 0.15 * stretch.end / kPathLeaves + wide, 1e-7);
     }
 }
 
@@ -139,12 +139,13 @@ TEST_F(LookAheadPathTest, OneFrameLostCostsNothingAndTwoAreBridged) {
             ASSERT_TRUE(path->note_path(straight(k, 150)));
         }
     }
-    EXPECT_DOUBLE_EQ(path->at(50)[kZ], -7.5) << "the next frame says it too";
-    EXPECT_NEAR(path->at(120)[kZ], -18, 1e-12) << "half way";
+    EXPECT_DOUBLE_EQ(path->at(50)[kAxisZ], -7.5) << "the next frame says it too";
+    EXPECT_NEAR(path->at(120)[kAxisZ], -18, 1e-12) << "half way";
     std::array<JointBox, kPathPieces> whole, bridged;
     path->cut(30, 2, whole);
     path->cut(119, 2, bridged);
-    EXPECT_NEAR(bridged[0].half[kZ] - whole[0].half[kZ], 3 * 2000 * kLongestS * kLongestS / 8, 1e-9)
+    EXPECT_NEAR(bridged[0].half[kAxisZ] - whole[0].half[kAxisZ],
+                3 * 2000 * kLongestS * kLongestS / 8, 1e-9)
         << "the chord of two periods bulges four times as much";
     EXPECT_GT(path->stretch(100, 5e-3).end, path->stretch(130, 5e-3).end);
 }
@@ -155,7 +156,7 @@ TEST_F(LookAheadPathTest, AHoleWidensTheReachOfAStopByWhatTheJerkMayDoInIt) {
     const auto reach_at = [this](std::uint64_t sample) {
         std::array<JointBox, kReachPieces> pieces;
         EXPECT_TRUE(path->reach(sample, 8e-3, pieces));
-        return pieces[0].half[kZ];
+        return pieces[0].half[kAxisZ];
     };
     for (std::uint64_t k = 1; k <= 300; ++k) {
         if (k != 120 && k != 121) {
@@ -184,8 +185,8 @@ TEST_F(LookAheadPathTest, AChordBulgesByTheLongestPeriod) {
         for (std::uint64_t k = 96; k <= 170; ++k) {
             PathPoints points;
             points.sample = k;
-            points.position[kZ] = at(static_cast<double>(k) - 96);
-            points.before[kZ] = at(static_cast<double>(k) - 97);
+            points.position[kAxisZ] = at(static_cast<double>(k) - 96);
+            points.before[kAxisZ] = at(static_cast<double>(k) - 97);
             if (k <= 100 || k > 100 + gap) {
                 ASSERT_TRUE(path->note_path(points)) << k;
             }
@@ -196,19 +197,19 @@ TEST_F(LookAheadPathTest, AChordBulgesByTheLongestPeriod) {
         double outside = HUGE_VAL;
         for (std::size_t i = kReachLeaves - 1; i < kReachPieces; ++i) {
             const double away =
-                std::abs(at(static_cast<double>(middle) - 96) - pieces[i].centre[kZ]);
-            outside = std::min(outside, away - pieces[i].half[kZ]);
+                std::abs(at(static_cast<double>(middle) - 96) - pieces[i].centre[kAxisZ]);
+            outside = std::min(outside, away - pieces[i].half[kAxisZ]);
         }
         EXPECT_LE(outside, 0) << "a hole of " << gap << " periods";
     }
 }
 
 TEST_F(LookAheadPathTest, ItsEndSaysHowTheAxisGoesOn) {
-    EXPECT_FALSE(path->end(kZ));
+    EXPECT_FALSE(path->end(kAxisZ));
     note_path(1, 1, 50);
-    EXPECT_FALSE(path->end(kZ)) << "one step says nothing about a speed before";
+    EXPECT_FALSE(path->end(kAxisZ)) << "one step says nothing about a speed before";
     note_path(2, 40, 50);
-    const auto end = path->end(kZ);
+    const auto end = path->end(kAxisZ);
     ASSERT_TRUE(end);
     EXPECT_NEAR(0.5 * (end->low + end->high), -0.05 * 39, 1e-9) << "a period before the last point";
     EXPECT_LT(end->speed_low, -50);
@@ -216,7 +217,7 @@ TEST_F(LookAheadPathTest, ItsEndSaysHowTheAxisGoesOn) {
     EXPECT_LT(end->speed_high - end->speed_low, 10);
     EXPECT_LT(end->acceleration_high - end->acceleration_low, 400);
     path->clear();
-    EXPECT_FALSE(path->end(kZ));
+    EXPECT_FALSE(path->end(kAxisZ));
 }
 
 TEST_F(LookAheadPathTest, ALargeHoleLeavesNothingBeforeIt) {
@@ -233,7 +234,7 @@ TEST_F(LookAheadPathTest, OldPointsLeave) {
     note_path(1, 1000, 150);
     EXPECT_TRUE(path->holds(1000 - 300));
     EXPECT_FALSE(path->holds(1000 - 300 - 64));
-    EXPECT_DOUBLE_EQ(path->at(700)[kZ], -0.15 * 700);
+    EXPECT_DOUBLE_EQ(path->at(700)[kAxisZ], -0.15 * 700);
 }
 
 // A board that takes back what it has sent can take back anything.
@@ -250,9 +251,9 @@ TEST_F(LookAheadPathTest, AnotherPositionForTheSameInstantForgetsEverything) {
 // Both sides of each bound: the period may be longer by a hundredth, and a point is rounded by half
 // a count. At 0 mm/s, mm/s2 and mm/s3 of the others, Z goes `share` of its limit.
 TEST_F(LookAheadPathTest, APathThatNoAxisCanFollowIsNotBelieved) {
-    options.count[kZ] = 1e-4;
+    options.count[kAxisZ] = 1e-4;
     for (const bool is_endless : {false, true}) {
-        m.axes[kZ].unlimited = is_endless;
+        m.axes[kAxisZ].unlimited = is_endless;
         for (const std::uint32_t order : {1U, 2U, 3U}) {
             const auto is_believed = [&](double share) {
                 make();
@@ -260,7 +261,7 @@ TEST_F(LookAheadPathTest, APathThatNoAxisCanFollowIsNotBelieved) {
                 for (std::uint64_t k = 1; k <= 40; ++k) {
                     const auto at = [&](std::uint64_t sample) {
                         const double s = kPeriodS * static_cast<double>(sample);
-                        const Axis& z = m.axes[kZ];
+                        const Axis& z = m.axes[kAxisZ];
                         const double q = order == 1   ? z.speed_max * s
                                          : order == 2 ? z.acceleration_max * s * (s - 0.04) / 2
                                                       : z.jerk_max * s * s * s / 6;
@@ -270,8 +271,8 @@ TEST_F(LookAheadPathTest, APathThatNoAxisCanFollowIsNotBelieved) {
                     };
                     PathPoints points;
                     points.sample = k;
-                    points.position[kZ] = at(k);
-                    points.before[kZ] = at(k - 1);
+                    points.position[kAxisZ] = at(k);
+                    points.before[kAxisZ] = at(k - 1);
                     all = path->note_path(points) && all;
                 }
                 return all;
@@ -287,16 +288,16 @@ TEST_F(LookAheadPathTest, APathThatNoAxisCanFollowIsNotBelieved) {
 // One instant is enough: where a path goes on somewhere else, or turns round at once.
 TEST_F(LookAheadPathTest, AJumpIsSeenInThePeriodItComesIn) {
     for (const double limit : {1e4, 1e6}) {  // the jerk of the axes: no limit that matters, then
-        m.axes[kZ].jerk_max = limit;
+        m.axes[kAxisZ].jerk_max = limit;
         m.guard.free_jerk_limited = limit < 1e5;
         make();
         note_path(1, 100, 150);
         PathPoints back = straight(101, 150);
-        back.position[kZ] = back.before[kZ] + 0.15;
+        back.position[kAxisZ] = back.before[kAxisZ] + 0.15;
         EXPECT_FALSE(path->note_path(back)) << "300 mm/s in 1 ms are 150 times the acceleration";
         EXPECT_FALSE(path->holds(99));
         PathPoints jump = straight(300, 150);
-        jump.position[kZ] += 1;
+        jump.position[kAxisZ] += 1;
         EXPECT_FALSE(path->note_path(jump));
         EXPECT_FALSE(path->holds(300)) << "not even these two";
         EXPECT_TRUE(path->note_path(straight(301, 150)));
@@ -316,8 +317,8 @@ TEST_F(LookAheadPathTest, JerkIsLookedAtWhereItIsPromised) {
             };
             PathPoints points;
             points.sample = k;
-            points.position[kZ] = at(k);
-            points.before[kZ] = at(k - 1);
+            points.position[kAxisZ] = at(k);
+            points.before[kAxisZ] = at(k - 1);
             is_believed = path->note_path(points) && is_believed;
         }
         EXPECT_EQ(is_believed, !is_promised);
@@ -328,14 +329,14 @@ TEST_F(LookAheadPathTest, JerkIsLookedAtWhereItIsPromised) {
 TEST_F(LookAheadPathTest, AHoleHidesNoJump) {
     note_path(1, 100, 150);
     PathPoints far = straight(106, 150);
-    far.position[kZ] -= 1;
-    far.before[kZ] -= 1;
+    far.position[kAxisZ] -= 1;
+    far.before[kAxisZ] -= 1;
     EXPECT_FALSE(path->note_path(far)) << "1.75 mm in 5 ms are 350 mm/s";
     make();
     note_path(107, 207, 150);
     PathPoints back = straight(213, 0);
-    back.before[kZ] = -0.15 * 207 + 0.15 * 5;
-    back.position[kZ] = back.before[kZ] + 0.15;
+    back.before[kAxisZ] = -0.15 * 207 + 0.15 * 5;
+    back.position[kAxisZ] = back.before[kAxisZ] + 0.15;
     EXPECT_FALSE(path->note_path(back)) << "turned round in 5 ms";
 }
 
@@ -347,41 +348,41 @@ TEST_F(LookAheadPathTest, AnEndlessAxisGoesTheShortWayRound) {
             const double turned = 6.2 + 1e-3 * static_cast<double>(sample);
             return turned - 2 * kPi * std::floor(turned / (2 * kPi));
         };
-        points.position[kC] = at(k);
-        points.before[kC] = at(k - 1);
+        points.position[kAxisC] = at(k);
+        points.before[kAxisC] = at(k - 1);
         ASSERT_TRUE(path->note_path(points));
     }
     const PathStretch stretch = path->stretch(70, 5e-3);
     ASSERT_TRUE(stretch.is_known);
     std::array<JointBox, kPathPieces> pieces;
     path->cut(70, stretch.end, pieces);
-    EXPECT_NEAR(2 * pieces[0].half[kC], 1e-3 * stretch.end, 1e-5);
-    EXPECT_NEAR(pieces[0].centre[kC] - pieces[0].half[kC], 6.27, 1e-5);
+    EXPECT_NEAR(2 * pieces[0].half[kAxisC], 1e-3 * stretch.end, 1e-5);
+    EXPECT_NEAR(pieces[0].centre[kAxisC] - pieces[0].half[kAxisC], 6.27, 1e-5);
     AxisSnapshot snapshot;
     snapshot.sample = 84;
-    snapshot.position[kC] = 6.2 + 0.084 - 2 * kPi;
-    m.axes[kC].position_error = 1e-6;
+    snapshot.position[kAxisC] = 6.2 + 0.084 - 2 * kPi;
+    m.axes[kAxisC].position_error = 1e-6;
     EXPECT_TRUE(path->keeps_to(snapshot));
-    snapshot.position[kC] += 2 * kPi - 2e-5;
+    snapshot.position[kAxisC] += 2 * kPi - 2e-5;
     EXPECT_TRUE(path->keeps_to(snapshot)) << "20 us of jitter at 1 rad/s";
 }
 
 // 20 us at 150 mm/s are 3 um; a count of each frame is one together.
 TEST_F(LookAheadPathTest, TheAxesKeepToThePathOrTheyDoNot) {
-    m.axes[kZ].following_error = 0.02;
-    m.axes[kZ].position_error = 0.001;
-    options.count[kZ] = 0.0001;
+    m.axes[kAxisZ].following_error = 0.02;
+    m.axes[kAxisZ].position_error = 0.001;
+    options.count[kAxisZ] = 0.0001;
     make();
     note_path(1, 300, 150);
     AxisSnapshot snapshot;
     snapshot.sample = 100;
     for (const double side : {-1.0, 1.0}) {
-        snapshot.position[kZ] = -15 + side * (0.0211 + 0.003);
+        snapshot.position[kAxisZ] = -15 + side * (0.0211 + 0.003);
         EXPECT_TRUE(path->keeps_to(snapshot));
-        snapshot.position[kZ] = -15 + side * (0.0211 + 0.003 + 1e-5);
+        snapshot.position[kAxisZ] = -15 + side * (0.0211 + 0.003 + 1e-5);
         EXPECT_FALSE(path->keeps_to(snapshot));
     }
-    snapshot.position[kZ] = std::nan("");
+    snapshot.position[kAxisZ] = std::nan("");
     EXPECT_FALSE(path->keeps_to(snapshot));
     snapshot.sample = 1000;  // nothing was said of it
     EXPECT_TRUE(path->keeps_to(snapshot));

@@ -19,7 +19,7 @@ constexpr std::uint32_t kKnownAnswerMesh = 77;
 constexpr WorkLists kAmple{1U << 20U, 1U << 20U, 1U << 20U, 1U << 20U, 1U << 20U};
 
 /// Judges each query as it is told to, and keeps what it saw.
-struct FakeEngine {
+struct ToldEngine {
     std::function<Proof(const Query&)> judge;
     bool prefers_batches = false;
     std::function<void(std::uint32_t call, std::span<const Query>, std::span<QueryResult>,
@@ -37,7 +37,7 @@ struct FakeEngine {
     }
     static void run(void* self, std::span<const Query> queries, std::span<QueryResult> results,
                     std::span<GroupWork> groups) noexcept {
-        FakeEngine& fake = *static_cast<FakeEngine*>(self);
+        ToldEngine& fake = *static_cast<ToldEngine*>(self);
         for (std::size_t i = 0; i < queries.size(); ++i) {
             const bool is_known = queries[i].mesh_a == kKnownAnswerMesh;
             const Proof proof = is_known ? queries[i].pose.t[0] > 1 ? Proof::far : Proof::not_proven
@@ -61,7 +61,7 @@ struct FakeEngine {
 };
 
 /// Far to margins up to this.
-FakeEngine far_to(double mm) {
+ToldEngine far_to(double mm) {
     return {.judge = [mm](const Query& query) {
         return query.r_mm <= mm ? Proof::far : Proof::not_proven;
     }};
@@ -95,7 +95,7 @@ struct Slides {
         out.lists.fill(kAmple);
         return out;
     }
-    void prove(FakeEngine& fake, const CyclePlan& plan, std::uint32_t mesh = kNoIndex) {
+    void prove(ToldEngine& fake, const CyclePlan& plan, std::uint32_t mesh = kNoIndex) {
         auto prover =
             StagedProver::create(machine, static_cast<std::uint32_t>(tasks.size()), plan, mesh);
         work = prover->prove(fake.engine(), tasks, results);
@@ -110,7 +110,7 @@ struct WiderSlides : Slides {
             tasks[pairs + i].box.half[0] = 16;
         }
     }
-    void prove(FakeEngine& fake, const CyclePlan& plan) {
+    void prove(ToldEngine& fake, const CyclePlan& plan) {
         auto prover =
             StagedProver::create(machine, static_cast<std::uint32_t>(tasks.size()), plan, kNoIndex);
         work = prover->prove(fake.engine(), tasks, results, true);
@@ -122,7 +122,7 @@ struct WiderSlides : Slides {
 TEST(StagedProver, WhatIsFarOverALargerBoxIsNotAskedAgain) {
     for (const bool prefers_batches : {false, true}) {
         WiderSlides slides(3);
-        FakeEngine fake{.judge =
+        ToldEngine fake{.judge =
                             [](const Query& query) {
                                 const double far_mm[] = {20, 9, 4.6};  // of each pair
                                 return query.r_mm <= far_mm[query.mesh_a - 1] ? Proof::far
@@ -146,7 +146,7 @@ TEST(StagedProver, WhatIsFarOverALargerBoxIsNotAskedAgain) {
 TEST(StagedProver, ALargerBoxThatSpentItsShareProvesNothing) {
     for (const bool prefers_batches : {false, true}) {
         WiderSlides slides(1);
-        FakeEngine fake{.judge =
+        ToldEngine fake{.judge =
                             [](const Query& query) {
                                 return query.r_mm > 9 ? Proof::far
                                                       : Proof::not_proven;  // the larger one alone
@@ -170,7 +170,7 @@ TEST(StagedProver, ALargerBoxThatSpentItsShareProvesNothing) {
 
 TEST(StagedProver, OneStageIsEnoughForWhatIsFarAsItIs) {
     Slides slides;
-    FakeEngine fake = far_to(8.6);
+    ToldEngine fake = far_to(8.6);
     slides.prove(fake, Slides::plan(2, TreeForm::whole, 14));
     EXPECT_EQ(slides.results[0].proof, JointBoxProof::proven);
     EXPECT_EQ(slides.work.stages, 1U);
@@ -181,7 +181,7 @@ TEST(StagedProver, ATreeIsAskedAsDeepAsItsQueriesFitAndNoDeeper) {
     for (const bool prefers_batches : {false, true}) {
         for (const bool fits : {true, false}) {
             Slides slides;
-            FakeEngine fake = far_to(1.6);  // 8 -> 4 -> 2 -> 1: three levels
+            ToldEngine fake = far_to(1.6);  // 8 -> 4 -> 2 -> 1: three levels
             fake.prefers_batches = prefers_batches;
             slides.prove(fake, Slides::plan(2, TreeForm::whole, fits ? 14 : 13));
             EXPECT_EQ(slides.results[0].proof,
@@ -190,7 +190,7 @@ TEST(StagedProver, ATreeIsAskedAsDeepAsItsQueriesFitAndNoDeeper) {
             EXPECT_EQ(fake.calls.size(), prefers_batches ? 2U : fits ? 4U : 3U);
 
             Slides leaves;
-            FakeEngine other = far_to(1.6);
+            ToldEngine other = far_to(1.6);
             other.prefers_batches = prefers_batches;
             leaves.prove(other, Slides::plan(2, TreeForm::leaves, fits ? 8 : 7));
             EXPECT_EQ(leaves.results[0].proof,
@@ -208,7 +208,7 @@ TEST(StagedProver, EveryLeafOfATreeIsNeeded) {
             for (int leaf = 0; leaf < 8; ++leaf) {
                 const double bad_mm = -7 + 2 * leaf;
                 Slides slides;
-                FakeEngine fake = far_to(1.6);
+                ToldEngine fake = far_to(1.6);
                 fake.prefers_batches = prefers_batches;
                 fake.judge = [bad_mm](const Query& query) {
                     const double reach_mm = query.r_mm - 0.5;
@@ -226,7 +226,7 @@ TEST(StagedProver, EveryLeafOfATreeIsNeeded) {
 TEST(StagedProver, AFarParentCoversItsLeaves) {
     for (const bool prefers_batches : {false, true}) {
         Slides slides;
-        FakeEngine fake{.judge =
+        ToldEngine fake{.judge =
                             [](const Query& query) {
                                 return query.r_mm < 5 && query.r_mm > 4 ? Proof::far
                                                                         : Proof::not_proven;
@@ -236,7 +236,7 @@ TEST(StagedProver, AFarParentCoversItsLeaves) {
         EXPECT_EQ(slides.results[0].proof, JointBoxProof::proven);
         EXPECT_EQ(fake.queries(), prefers_batches ? 15U : 3U);
 
-        FakeEngine half = fake;
+        ToldEngine half = fake;
         half.calls.clear();
         half.judge = [](const Query& query) {
             return query.r_mm < 5 && query.r_mm > 4 && query.pose.t[0] > 0 ? Proof::far
@@ -249,14 +249,14 @@ TEST(StagedProver, AFarParentCoversItsLeaves) {
 
 TEST(StagedProver, TheThirdStageAsksBelowWhatTheSecondLeftOpen) {
     Slides slides;
-    FakeEngine fake = far_to(1.6);
+    ToldEngine fake = far_to(1.6);
     slides.prove(fake, Slides::plan(2, TreeForm::leaves, 4));
     EXPECT_EQ(slides.results[0].proof, JointBoxProof::budget_spent) << "parts of 4 mm";
-    FakeEngine again = far_to(1.6);
+    ToldEngine again = far_to(1.6);
     slides.prove(again, Slides::plan(3, TreeForm::leaves, 8));
     EXPECT_EQ(slides.results[0].proof, JointBoxProof::proven);
     EXPECT_EQ(slides.work.stages, 2U);
-    FakeEngine deeper{.judge = [](const Query& query) {
+    ToldEngine deeper{.judge = [](const Query& query) {
         const bool is_near_end = query.pose.t[0] > 6.5;  // the last part of 2 mm wants halves
         return query.r_mm <= (is_near_end ? 1.1 : 1.6) ? Proof::far : Proof::not_proven;
     }};
@@ -273,12 +273,12 @@ TEST(StagedProver, ThreeStagesOfAPlanGetAsDeepAsTwoAndDeeperWhereFewBoxesAreOpen
     for (const std::uint32_t stages : {2U, 3U}) {
         for (const std::uint32_t halvings : {9U, 10U}) {
             Slides slides;
-            FakeEngine fake = far_to(0.501 + std::ldexp(8, -static_cast<int>(halvings)));
+            ToldEngine fake = far_to(0.501 + std::ldexp(8, -static_cast<int>(halvings)));
             slides.prove(fake, plan_of(stages, 1, 512, kAmple));
             EXPECT_EQ(slides.results[0].proof == JointBoxProof::proven, halvings == 9) << stages;
         }
         Slides slides;
-        FakeEngine fake{.judge = [](const Query& query) {
+        ToldEngine fake{.judge = [](const Query& query) {
             const bool is_end = query.pose.t[0] + query.r_mm - 0.5 > 7.75;
             return query.r_mm <= (is_end ? 0.501 : 0.8) ? Proof::far : Proof::not_proven;
         }};
@@ -291,7 +291,7 @@ TEST(StagedProver, ThreeStagesOfAPlanGetAsDeepAsTwoAndDeeperWhereFewBoxesAreOpen
 TEST(StagedProver, AStageTooSmallForALevelOfAllTreesIsLeftOut) {
     for (const std::uint32_t count : {16U, 17U}) {  // 32 queries are two for each of sixteen
         Slides slides(count);
-        FakeEngine fake = far_to(0.501 + 0.5);  // four halvings
+        ToldEngine fake = far_to(0.501 + 0.5);  // four halvings
         slides.prove(fake, plan_of(3, count, 512, kAmple));
         for (const JointBoxResult& result : slides.results) {
             EXPECT_EQ(result.proof, JointBoxProof::proven);
@@ -305,7 +305,7 @@ TEST(StagedProver, DepthIsThatOfAllStagesTogether) {
     Slides slides;
     CyclePlan plan = Slides::plan(3, TreeForm::leaves, 1024);
     plan.depth_max = 2;
-    FakeEngine fake = far_to(1.6);
+    ToldEngine fake = far_to(1.6);
     slides.prove(fake, plan);
     EXPECT_EQ(slides.results[0].proof, JointBoxProof::budget_spent);
     EXPECT_EQ(fake.queries(), 5U);
@@ -319,7 +319,7 @@ TEST(StagedProver, EachTaskIsAGroupWithAnEqualShareAndOneThatIsProvenLeavesItsOw
     CyclePlan plan = Slides::plan(2, TreeForm::whole, 28);
     plan.lists[0] = {30, 31, 32, 100, 34};
     plan.lists[1] = {100, 101, 102, 103, 104};
-    FakeEngine fake{.judge =
+    ToldEngine fake{.judge =
                         [](const Query& query) {
                             return query.mesh_a == 2 || query.r_mm <= 1.6 ? Proof::far
                                                                           : Proof::not_proven;
@@ -358,7 +358,7 @@ auto spend_in(std::uint32_t spent_call) {
 TEST(StagedProver, ASpentGroupLosesItsStageAndNoOtherNotices) {
     for (const bool prefers_batches : {false, true}) {
         Slides slides(2);
-        FakeEngine fake = far_to(1.6);
+        ToldEngine fake = far_to(1.6);
         fake.prefers_batches = prefers_batches;
         fake.spoil = spend_in(1);
         slides.prove(fake, Slides::plan(2, TreeForm::whole, 28));
@@ -367,7 +367,7 @@ TEST(StagedProver, ASpentGroupLosesItsStageAndNoOtherNotices) {
         EXPECT_EQ(slides.results[1].proof, JointBoxProof::proven);
     }
     Slides roots(2);
-    FakeEngine fake = far_to(8.6);
+    ToldEngine fake = far_to(8.6);
     fake.spoil = spend_in(0);
     roots.prove(fake, Slides::plan(1, TreeForm::whole, 0));
     EXPECT_EQ(roots.results[0].proof, JointBoxProof::budget_spent);
@@ -377,7 +377,7 @@ TEST(StagedProver, ASpentGroupLosesItsStageAndNoOtherNotices) {
 TEST(StagedProver, ASpentGroupBeginsTheNextStageWithWhatItHad) {
     for (const bool prefers_batches : {false, true}) {
         Slides slides(2);
-        FakeEngine fake = far_to(1.6);
+        ToldEngine fake = far_to(1.6);
         fake.prefers_batches = prefers_batches;
         fake.spoil = spend_in(1);
         slides.prove(fake, Slides::plan(3, TreeForm::leaves, 16));
@@ -392,7 +392,7 @@ TEST(StagedProver, AnEngineThatIsLostAnywhereProvesNothingInThatCycle) {
     for (const QueryStatus status : {QueryStatus::not_run, QueryStatus::bad_rounding}) {
         for (const std::uint32_t lost_call : {0U, 1U}) {
             Slides slides(2);
-            FakeEngine fake{.judge =
+            ToldEngine fake{.judge =
                                 [](const Query& query) {
                                     return query.mesh_a == 2 || query.r_mm <= 4.6
                                                ? Proof::far
@@ -419,7 +419,7 @@ TEST(StagedProver, AKnownAnswerThatIsWrongInOneStageIsFoundOut) {
     for (const std::uint32_t wrong_call : {0U, 1U}) {
         for (const std::size_t back : {1U, 2U}) {
             Slides slides;
-            FakeEngine fake = far_to(1.6);
+            ToldEngine fake = far_to(1.6);
             fake.prefers_batches = true;
             fake.spoil = [&](std::uint32_t call, std::span<const Query>,
                              std::span<QueryResult> results, std::span<GroupWork>) {
@@ -434,7 +434,7 @@ TEST(StagedProver, AKnownAnswerThatIsWrongInOneStageIsFoundOut) {
         }
     }
     Slides slides(0);
-    FakeEngine fake = far_to(0);
+    ToldEngine fake = far_to(0);
     slides.prove(fake, Slides::plan(2, TreeForm::leaves, 8), kKnownAnswerMesh);
     EXPECT_EQ(slides.work.known_answer_signature, kKnownAnswerSignature);
     EXPECT_EQ(slides.work.calls, 1U) << "without a task the engine is asked too";
@@ -442,7 +442,7 @@ TEST(StagedProver, AKnownAnswerThatIsWrongInOneStageIsFoundOut) {
 
 TEST(StagedProver, MoreTasksThanTheFirstStageHasRoomForAreNotProven) {
     Slides slides(9);  // the plan has room for eight
-    FakeEngine fake = far_to(100);
+    ToldEngine fake = far_to(100);
     slides.prove(fake, Slides::plan(2, TreeForm::leaves, 64));
     for (const JointBoxResult& result : slides.results) {
         EXPECT_EQ(result.proof, JointBoxProof::budget_spent);
@@ -453,7 +453,7 @@ TEST(StagedProver, MoreTasksThanTheFirstStageHasRoomForAreNotProven) {
 TEST(StagedProver, ABoxThatCannotBeCutIsAskedOnce) {
     Slides slides;
     slides.tasks[0].box.half[0] = 0;
-    FakeEngine fake = far_to(0.4);
+    ToldEngine fake = far_to(0.4);
     slides.prove(fake, Slides::plan(3, TreeForm::leaves, 64));
     EXPECT_EQ(slides.results[0].proof, JointBoxProof::budget_spent);
     EXPECT_EQ(fake.queries(), 1U);

@@ -16,18 +16,18 @@
 namespace axg::test {
 namespace {
 
-constexpr std::uint32_t kX = 0, kZ = 2;
+constexpr std::uint32_t kTableAxis = 0, kHeadAxis = 2;
 constexpr std::uint64_t kLookAhead = 200;
-constexpr double kPeriodS = 1e-3, kMarginMm = 0.5, kSpeedMmS = 100;
+constexpr double kSamplePeriodS = 1e-3, kMarginMm = 0.5, kSpeedMmS = 100;
 
 /// A table on X, a head on Z 60 mm above it.
-Machine machine() {
+Machine path_keeping_machine() {
     Machine m = motion_test_machine();
     m.tools.clear();
     m.first_tool = 0;
     m.bodies.assign(2, Body{});
-    m.bodies[0].joint = {kX, {1, 0, 0}, {}};
-    m.bodies[1].joint = {kZ, {0, 0, 1}, {}};
+    m.bodies[0].joint = {kTableAxis, {1, 0, 0}, {}};
+    m.bodies[1].joint = {kHeadAxis, {0, 0, 1}, {}};
     m.pairs = {{1, 0, kMarginMm}};
     m.can.format = CanFormat::fd;
     m.can.look_ahead_samples = kLookAhead;
@@ -51,7 +51,7 @@ class StopCertificatePath : public testing::Test {
         }
         // 50 ms of 20,000 mm/s3, of 1000 mm/s2, and of -20,000 mm/s3.
         const auto ramp = [&](double since) {
-            const double s = std::max(0.0, (sample - since) * kPeriodS);
+            const double s = std::max(0.0, (sample - since) * kSamplePeriodS);
             return 20'000 * s * s * s / 6;
         };
         return -(ramp(250) - ramp(300) - ramp(350) + ramp(400));
@@ -59,10 +59,10 @@ class StopCertificatePath : public testing::Test {
     void note_path(std::uint64_t sample) {
         PathPoints points;
         points.sample = sample + kLookAhead;
-        points.position[kZ] = z_at(static_cast<double>(points.sample));
-        points.before[kZ] = z_at(static_cast<double>(points.sample - 1));
-        points.position[kX] = x_share * points.position[kZ];
-        points.before[kX] = x_share * points.before[kZ];
+        points.position[kHeadAxis] = z_at(static_cast<double>(points.sample));
+        points.before[kHeadAxis] = z_at(static_cast<double>(points.sample - 1));
+        points.position[kTableAxis] = x_share * points.position[kHeadAxis];
+        points.before[kTableAxis] = x_share * points.before[kHeadAxis];
         certificate->note_path(points);
     }
     void note(std::uint64_t sample, double off = 0) {
@@ -70,8 +70,8 @@ class StopCertificatePath : public testing::Test {
         snapshot.sample = sample;
         snapshot.axis_count = 5;
         snapshot.mode = kModeMoving;
-        snapshot.position[kZ] = z_at(static_cast<double>(sample)) + off;
-        snapshot.position[kX] = x_share * snapshot.position[kZ];
+        snapshot.position[kHeadAxis] = z_at(static_cast<double>(sample)) + off;
+        snapshot.position[kTableAxis] = x_share * snapshot.position[kHeadAxis];
         certificate->note(snapshot, false);
     }
     CycleResult decide() {
@@ -102,7 +102,7 @@ class StopCertificatePath : public testing::Test {
         return result;
     }
 
-    Machine m = machine();
+    Machine m = path_keeping_machine();
     ContainmentScene scene{{{"table", box({-50, -50, -10}, {50, 50, 0})},
                             {"head", box({-20, -20, 60}, {20, 20, 100})},
                             known_answer_mesh()}};
@@ -203,8 +203,8 @@ TEST_F(StopCertificatePath, ABoardThatTakesBackItsWordStops) {
     ASSERT_TRUE(run(1, 400).has_permit);
     PathPoints points;
     points.sample = 401 + kLookAhead;
-    points.position[kX] = points.before[kX] = 0.001;
-    points.position[kZ] = points.before[kZ] = z_at(400 + kLookAhead);
+    points.position[kTableAxis] = points.before[kTableAxis] = 0.001;
+    points.position[kHeadAxis] = points.before[kHeadAxis] = z_at(400 + kLookAhead);
     certificate->note_path(points);
     note(401);
     EXPECT_EQ(decide().reason, StopReason::left_path);
@@ -215,7 +215,7 @@ TEST_F(StopCertificatePath, LeavingThePathBeforeTheFirstPermitIsNoStop) {
     (void)run(1, 50);
     PathPoints points;
     points.sample = 51 + kLookAhead;
-    points.before[kX] = 3;
+    points.before[kTableAxis] = 3;
     certificate->note_path(points);
     note(51);
     const CycleResult result = decide();
@@ -228,7 +228,7 @@ TEST_F(StopCertificatePath, WhoeverBeginsAnewNeedsThePathAnew) {
     AxisSnapshot snapshot;
     snapshot.sample = 401;
     snapshot.axis_count = 5;
-    snapshot.position[kZ] = z_at(401);
+    snapshot.position[kHeadAxis] = z_at(401);
     certificate->note(snapshot, true);
     EXPECT_EQ(decide().reason, StopReason::predicted);
 }
@@ -244,10 +244,10 @@ struct Turned {
 
 class ImpossiblePath : public StopCertificatePath {
   protected:
-    void SetUp() override { m.axes[kZ].following_error = 0.02; }
+    void SetUp() override { m.axes[kHeadAxis].following_error = 0.02; }
     Turned drive_to_the_turn(bool forgets) {
         if (forgets) {
-            lab::believe_any_turn(m, kZ, kSpeedMmS);
+            lab::believe_any_turn(m, kHeadAxis, kSpeedMmS);
         }
         make();
         was_permitted = is_stopped = false;
@@ -263,8 +263,8 @@ class ImpossiblePath : public StopCertificatePath {
             const auto at = static_cast<double>(k);
             z = z_at(at);
             if (k > out.turn) {
-                speed = 100 - 2000 * (at - turns_at) * kPeriodS;
-                const double s = std::min(0.05, (at - turns_at) * kPeriodS);
+                speed = 100 - 2000 * (at - turns_at) * kSamplePeriodS;
+                const double s = std::min(0.05, (at - turns_at) * kSamplePeriodS);
                 z = z_at(turns_at) - 100 * s + 0.5 * 2000 * s * s;
             }
             note(k, z - z_at(at));
@@ -336,7 +336,7 @@ TEST_F(StopCertificateLookAhead, WithoutThePathTheBoxHolds) {
     }
     EXPECT_TRUE(was_permitted);
     EXPECT_FALSE(is_stopped);
-    const double box = certificate->reach(3).half[kZ];
+    const double box = certificate->reach(3).half[kHeadAxis];
     EXPECT_TRUE(certificate->cycle().is_settled);
     EXPECT_GT(box, 0.01);
 }

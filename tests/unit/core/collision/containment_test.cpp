@@ -25,11 +25,11 @@ using test::shifted;
 using test::together;
 using test::turned_over;
 
-const Mesh kCube{"cube", box({-1, -1, -1}, {1, 1, 1})};
+const Mesh kSmallCube{"cube", box({-1, -1, -1}, {1, 1, 1})};
 const Mesh kRoom{"room", box({-8, -8, -8}, {8, 8, 8})};
 
 TEST(Containment, ACubeInACubeBothWays) {
-    ContainmentScene scene({kCube, kRoom});
+    ContainmentScene scene({kSmallCube, kRoom});
     for (const double x : {0.0, 5.0, 6.999}) {
         EXPECT_EQ(scene.judge(shifted(x, 0, -x)), Containment::a_in_b) << x;
         EXPECT_EQ(scene.judge(shifted(-x, 0, x), 1, 0), Containment::b_in_a) << x;
@@ -42,7 +42,7 @@ TEST(Containment, ACubeInACubeBothWays) {
 
 // Where the surfaces are not proven apart there is no claim, and none is needed: that is a stop.
 TEST(Containment, TouchingSurfacesLeaveNothingToSay) {
-    ContainmentScene scene({kCube, kRoom});
+    ContainmentScene scene({kSmallCube, kRoom});
     for (const double x : {7.0, 8.0, 9.0}) {
         const ContainmentResult result = scene.run(ContainmentScene::about(shifted(x, 0, 0)));
         EXPECT_EQ(result.status, QueryStatus::not_run) << x;
@@ -52,7 +52,7 @@ TEST(Containment, TouchingSurfacesLeaveNothingToSay) {
 }
 
 TEST(Containment, AMarginIsProvenFirst) {
-    ContainmentScene scene({kCube, kRoom});
+    ContainmentScene scene({kSmallCube, kRoom});
     Query query = ContainmentScene::about(shifted(5, 0, 0));  // 2 mm to the wall
     query.r_mm = 1.99;
     EXPECT_EQ(scene.run(query).containment, Containment::a_in_b);
@@ -63,7 +63,7 @@ TEST(Containment, AMarginIsProvenFirst) {
 TEST(Containment, ACavityIsOutside) {
     const Mesh hollow{"hollow",
                       together(kRoom.triangles, turned_over(box({-4, -4, -4}, {4, 4, 4})))};
-    ContainmentScene scene({kCube, hollow});
+    ContainmentScene scene({kSmallCube, hollow});
     EXPECT_EQ(scene.judge(shifted(0, 0, 0)), Containment::none);
     EXPECT_EQ(scene.judge(shifted(0, 0, 0), 1, 0), Containment::none);
     EXPECT_EQ(scene.judge(shifted(6, 0, 0)), Containment::a_in_b) << "in the wall";
@@ -97,7 +97,7 @@ TEST(Containment, APartInTheHoleDoesNotSpeakForTheOther) {
 
 // Its box lies in the other's box, and yet it is beside it.
 TEST(Containment, NestedBoxesAloneAreNoContainment) {
-    ContainmentScene scene({kCube, {"ring", test::ring(32, 16, 40, 10)}});
+    ContainmentScene scene({kSmallCube, {"ring", test::ring(32, 16, 40, 10)}});
     const ContainmentResult hole = scene.run(ContainmentScene::about(shifted(0, 0, 0)));
     EXPECT_EQ(hole.containment, Containment::none);
     EXPECT_EQ(hole.rays, 1U);
@@ -111,7 +111,7 @@ TEST(Containment, NestedBoxesAloneAreNoContainment) {
 TEST(Containment, AnOpenShellHoldsNothingButCanBeHeld) {
     Mesh open = kRoom;
     open.triangles.pop_back();
-    ContainmentScene scene({kCube, open, {"hall", box({-20, -20, -20}, {20, 20, 20})}});
+    ContainmentScene scene({kSmallCube, open, {"hall", box({-20, -20, -20}, {20, 20, 20})}});
     EXPECT_EQ(scene.judge(shifted(0, 0, 0)), Containment::none) << "no claim about what is open";
     EXPECT_EQ(scene.judge(shifted(0, 0, 0), 1, 2), Containment::a_in_b) << "inside a closed shell";
     EXPECT_EQ(scene.judge(shifted(0, 0, 0), 2, 1), Containment::b_in_a);
@@ -137,7 +137,7 @@ TEST(Containment, ABodyOfSeveralBoxesHoldsInEachOfThem) {
 
 TEST(Containment, AnyTurnOfTheBodiesIsTheSameScene) {
     test::Draw draw(7);
-    ContainmentScene scene({kCube, kRoom});
+    ContainmentScene scene({kSmallCube, kRoom});
     for (int i = 0; i < 200; ++i) {
         Pose turned = test::random_rotation(draw);
         EXPECT_EQ(scene.judge(turned), Containment::a_in_b);
@@ -148,7 +148,7 @@ TEST(Containment, AnyTurnOfTheBodiesIsTheSameScene) {
 }
 
 TEST(Containment, AQueryProvenWithoutRoomForRoundingIsRefused) {
-    ContainmentScene scene({kCube, kRoom});
+    ContainmentScene scene({kSmallCube, kRoom});
     Query query = ContainmentScene::about(shifted(3, 0, 0));
     EXPECT_EQ(scene.run(query).status, QueryStatus::ok);
     query.pose_error_mm = kPlaceErrorMm / 2;
@@ -174,7 +174,7 @@ TEST(Containment, PairQueriesLetContainmentFollow) {
 // A pose so far from rigid that a corner cannot be placed in the other frame to within
 // kPlaceErrorMm: taken by the engine, refused here, and only where it matters.
 TEST(Containment, ABarelyRigidPoseIsNotProven) {
-    ContainmentScene scene({kCube, {"room", box({-800, -800, -800}, {800, 800, 800})}});
+    ContainmentScene scene({kSmallCube, {"room", box({-800, -800, -800}, {800, 800, 800})}});
     Pose pose = shifted(700, 0, 0);
     EXPECT_EQ(scene.judge(pose), Containment::a_in_b);
     EXPECT_EQ(scene.judge(shifted(-700, 0, 0), 1, 0), Containment::b_in_a);
@@ -187,7 +187,7 @@ TEST(Containment, ABarelyRigidPoseIsNotProven) {
 }
 
 TEST(Containment, UnknownAndEmptyBodiesAreRefused) {
-    ContainmentScene scene({kCube, kRoom, {"link", {}}});
+    ContainmentScene scene({kSmallCube, kRoom, {"link", {}}});
     QueryResult far;
     far.status = QueryStatus::ok;
     far.proof = Proof::far;
@@ -204,7 +204,7 @@ TEST(Containment, UnknownAndEmptyBodiesAreRefused) {
 // Nothing is known of a pose that nobody proved, and a proof with less room than a corner's
 // rounded place needs is none.
 TEST(Containment, BeginsWithAProof) {
-    ContainmentScene scene({kCube, kRoom});
+    ContainmentScene scene({kSmallCube, kRoom});
     ApartPose at;
     at.is_proven = true;
     at.mesh_b = 1;
@@ -220,7 +220,7 @@ TEST(Containment, BeginsWithAProof) {
 }
 
 TEST(Containment, AnotherRoundingModeProvesNothing) {
-    ContainmentScene scene({kCube, kRoom});
+    ContainmentScene scene({kSmallCube, kRoom});
     const Query query = ContainmentScene::about(shifted(0, 0, 0));
     const QueryResult far = test::run_query(scene.engine(), query);
     ContainmentResult result;
@@ -236,7 +236,7 @@ TEST(Containment, AnotherRoundingModeProvesNothing) {
 TEST(Containment, ACapacityTooSmallIsNotProven) {
     const Mesh ball{"ball", test::ball(24, 50)};
     const Query query = ContainmentScene::about(shifted(0, 0, 0));
-    ContainmentScene scene({kCube, ball});
+    ContainmentScene scene({kSmallCube, ball});
     const ContainmentResult used = scene.run(query);
     ASSERT_EQ(used.containment, Containment::a_in_b);
     QueryResult far;
@@ -245,7 +245,7 @@ TEST(Containment, ACapacityTooSmallIsNotProven) {
     Capacities less;
     less.node_pairs = used.nodes - 1;
     ContainmentResult result;
-    ContainmentScene({kCube, ball}, less)
+    ContainmentScene({kSmallCube, ball}, less)
         .containment_test()
         .run({&query, 1}, {&far, 1}, {&result, 1});
     EXPECT_EQ(result.status, QueryStatus::too_many_node_pairs);
@@ -253,7 +253,7 @@ TEST(Containment, ACapacityTooSmallIsNotProven) {
 }
 
 TEST(Containment, EveryQueryHasItsOwnResult) {
-    ContainmentScene scene({kCube, kRoom});
+    ContainmentScene scene({kSmallCube, kRoom});
     const std::vector<Query> queries{ContainmentScene::about(shifted(0, 0, 0)),
                                      ContainmentScene::about(shifted(8, 0, 0)),
                                      ContainmentScene::about(shifted(20, 0, 0))};

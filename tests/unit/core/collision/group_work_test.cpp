@@ -32,7 +32,7 @@ constexpr List kLists[] = {
     {"triangle pairs", &WorkLists::triangle_pairs, QueryStatus::too_many_triangle_pairs},
     {"rechecks", &WorkLists::rechecks, QueryStatus::too_many_rechecks}};
 
-std::vector<Mesh> surfaces() {
+std::vector<Mesh> lumpy_balls() {
     test::Draw draw(4);
     return {test::lumpy_ball(draw, 20, 30, 0.2), test::lumpy_ball(draw, 24, 40, 0.2)};
 }
@@ -73,7 +73,7 @@ class GroupWorkTest : public testing::TestWithParam<LaneSet> {
         return group.used;
     }
 
-    CpuEngine engine = *test::engine_over(surfaces(), {}, GetParam());
+    CpuEngine engine = *test::engine_over(lumpy_balls(), {}, GetParam());
 };
 
 INSTANTIATE_TEST_SUITE_P(Lanes, GroupWorkTest, testing::ValuesIn(test::lane_sets()),
@@ -190,7 +190,7 @@ TEST_P(GroupWorkTest, AGroupThatNeedsAllIsLeftAtItsFirstNearQuery) {
 TEST_P(GroupWorkTest, ManyPairsOfNodesAreNeverForgotten) {
     Capacities few;
     few.node_pairs = 1;  // no place but for one pair, and a share for any number
-    CpuEngine tight = *test::engine_over(surfaces(), few, GetParam());
+    CpuEngine tight = *test::engine_over(lumpy_balls(), few, GetParam());
     Query touching = near_miss(0);
     touching.pose = shifted(0, 0, 0);
     for (const bool counts_all : {false, true}) {

@@ -15,7 +15,7 @@ CapWish wish_of(CapOrder best, bool is_kept_fine = false) {
     return {.best = best, .is_kept_fine = is_kept_fine};
 }
 
-struct Bench {
+struct ControlBench {
     /// A cycle in which what was asked is proven, or not.
     CapOrder step(const CapWish& wish, bool is_asked_proven = true, bool is_proven = true,
                   bool is_slowing = false) {
@@ -53,7 +53,7 @@ void expect_order(const CapOrder& order, int cap, int mask) {
 }
 
 TEST(CapControl, FallsAtOnceToWhatBindsMore) {
-    Bench bench;
+    ControlBench bench;
     expect_order(bench.step(wish_of({}, true)), kCapRapid, 0);
     expect_order(bench.step(wish_of({.cap = 32, .mask = 1})), 32, 1);
     expect_order(bench.step(wish_of({.cap = 8, .mask = 3})), 8, 3);
@@ -62,20 +62,20 @@ TEST(CapControl, FallsAtOnceToWhatBindsMore) {
 
 // X may be faster again and Y is bound in its place: one permit cannot do that unproven.
 TEST(CapControl, AcrossItAsksAndOtherwiseBindsBoth) {
-    Bench bench;
+    ControlBench bench;
     bench.step(wish_of({.cap = 1, .mask = 1}));
     const CapWish across = wish_of({.cap = 6, .mask = 2});
     expect_order(bench.step(across), 1, 1);
     expect_order(bench.step(across), 6, 2);
     EXPECT_EQ(bench.asked, 1);
-    Bench other;
+    ControlBench other;
     other.step(wish_of({.cap = 1, .mask = 1}));
     other.step(across);
     expect_order(other.step(across, false), 1, 3);
 }
 
 TEST(CapControl, RisesAfterAWhileAndOnlyIfThatIsProven) {
-    Bench bench;
+    ControlBench bench;
     bench.step(wish_of({.cap = 8, .mask = 1}));
     const CapWish rapid = wish_of({}, true);
     expect_order(bench.steps(100, rapid), 8, 1);
@@ -85,7 +85,7 @@ TEST(CapControl, RisesAfterAWhileAndOnlyIfThatIsProven) {
 }
 
 TEST(CapControl, WhileTheBoardSlowsDownItOrdersLessOnlyByHalf) {
-    Bench bench;
+    ControlBench bench;
     bench.step(wish_of({.cap = 20, .mask = 3}));
     expect_order(bench.step(wish_of({.cap = 11, .mask = 3}), true, true, true), 20, 3);
     expect_order(bench.step(wish_of({.cap = 10, .mask = 3}), true, true, true), 10, 3);
@@ -93,7 +93,7 @@ TEST(CapControl, WhileTheBoardSlowsDownItOrdersLessOnlyByHalf) {
 }
 
 TEST(CapControl, CrawlsThenHoldsAndGoesOn) {
-    Bench bench;
+    ControlBench bench;
     const CapWish none{
         .best = {.cap = 1, .mask = 0xFF}, .is_kept_fine = false, .is_any_proven = false};
     expect_order(bench.step(none), kCapCrawl, 0xFF);
@@ -110,7 +110,7 @@ TEST(CapControl, CrawlsThenHoldsAndGoesOn) {
 // Whatever the cycles say: `step` checks each order.
 TEST(CapControl, NeverOrdersWhatIsNotProven) {
     std::mt19937_64 random(test::printed_seed(2711));
-    Bench bench;
+    ControlBench bench;
     for (int i = 0; i < 200'000; ++i) {
         const auto cap = static_cast<std::uint8_t>(1 + random() % kCapRapid);
         CapWish wish = wish_of({.cap = cap, .mask = static_cast<std::uint8_t>(random() % 32)},

@@ -35,8 +35,8 @@ CapFacts facts_at(std::uint8_t acked) {
 
 constexpr CapWish kSlower{.best = {.cap = 187, .mask = 0xFF}, .is_kept_fine = false};
 
-struct Bench {
-    explicit Bench(CapPromise promise = CapPromise::all_axes)
+struct GuardBench {
+    explicit GuardBench(CapPromise promise = CapPromise::all_axes)
         : machine(capped_machine(promise)), guard(machine) {}
 
     /// One sample further, the second axis by so much.
@@ -76,7 +76,7 @@ struct Bench {
 };
 
 TEST(CapGuard, OrdersLessWhereThatIsWishedFor) {
-    Bench bench;
+    GuardBench bench;
     CycleResult result = bench.step(facts_at(kCapRapid), 0);
     EXPECT_TRUE(result.has_cap);
     EXPECT_EQ(result.cap_order.cap, kCapRapid);
@@ -89,14 +89,14 @@ TEST(CapGuard, OrdersLessWhereThatIsWishedFor) {
 }
 
 TEST(CapGuard, AResultOfACapThatIsNoLongerOrderedHasNoPermit) {
-    Bench bench;
+    GuardBench bench;
     bench.step(facts_at(kCapRapid), 0, kSlower);
     EXPECT_FALSE(bench.step(facts_at(kCapRapid), 0, {}, false).has_permit);
     EXPECT_TRUE(bench.step(facts_at(kCapRapid), 0, {}, false).has_permit);
 }
 
 TEST(CapGuard, WithoutAPromiseItIsSilent) {
-    Bench bench(CapPromise::none);
+    GuardBench bench(CapPromise::none);
     const CycleResult result = bench.step(facts_at(1), 400, kSlower);
     EXPECT_FALSE(result.has_cap);
     EXPECT_TRUE(result.has_permit);
@@ -104,23 +104,23 @@ TEST(CapGuard, WithoutAPromiseItIsSilent) {
 
 // 25 of 250 of 500 mm/s: 0.05 mm a period, and 0.01 mm of the errors of two samples.
 TEST(CapGuard, AnAxisThatIsFasterThanItsCapIsSeen) {
-    Bench kept;
+    GuardBench kept;
     EXPECT_FALSE(kept.steps(500, facts_at(25), 0.05));
-    Bench broken;
+    GuardBench broken;
     const auto stop = broken.steps(17, facts_at(25), 0.0525);
     ASSERT_TRUE(stop);
     EXPECT_EQ(stop->reason, StopReason::left_cap);
     EXPECT_EQ(stop->cap_fact.kind, CapBreak::too_fast);
     EXPECT_EQ(stop->cap_fact.axis, 1U);
     EXPECT_FALSE(stop->has_permit);
-    Bench fast;
+    GuardBench fast;
     EXPECT_TRUE(fast.steps(2, facts_at(25), 0.07)) << "within a period";
-    Bench unbound;
+    GuardBench unbound;
     EXPECT_FALSE(unbound.steps(100, CapFacts{}, 0.5)) << "rapid, which limits_broken watches";
 }
 
 TEST(CapGuard, AnOrderThatIsNotAcknowledgedInTimeStops) {
-    Bench bench;
+    GuardBench bench;
     bench.step(facts_at(kCapRapid), 0, kSlower);
     const int most = static_cast<int>(cap_answer_seconds(bench.machine) * 1e3);
     for (const bool in_time : {true, false}) {
@@ -135,7 +135,7 @@ TEST(CapGuard, AnOrderThatIsNotAcknowledgedInTimeStops) {
 
 // A replay that begins in the middle: the order was recorded, and its wait begins with it.
 TEST(CapGuard, AnOrderThatIsTakenOverHasItsTimeToo) {
-    Bench bench;
+    GuardBench bench;
     bench.snapshot.latched_us = 5'000'000;
     EXPECT_FALSE(bench.step(facts_at(kCapRapid), 0).is_stop);
     const CapOrder order{.cap = 100, .mask = 0xFF};
@@ -147,7 +147,7 @@ TEST(CapGuard, AnOrderThatIsTakenOverHasItsTimeToo) {
 
 // Of axes that the machine does not have a record holds nothing, and reads as rapid.
 TEST(CapGuard, AxesThatAreNotThereNeedNotAcknowledge) {
-    Bench bench;
+    GuardBench bench;
     const CapOrder order{.cap = 100, .mask = 0xFF};
     bench.guard.set_order(order);
     CapFacts facts = facts_at(100);
@@ -156,7 +156,7 @@ TEST(CapGuard, AxesThatAreNotThereNeedNotAcknowledge) {
 }
 
 TEST(CapGuard, APermitThatWasNeverSentStops) {
-    Bench bench;
+    GuardBench bench;
     CapFacts facts;
     facts.status = AckStatus::unknown;
     EXPECT_FALSE(bench.step(facts, 0, {}, false).is_stop);

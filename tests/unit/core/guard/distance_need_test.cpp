@@ -68,25 +68,26 @@ class DistanceNeedTest : public testing::Test {
 // is at 110 mm/s; at 1500 mm/s2 it brakes within 110^2 / 3000 = 4.0333 mm. From 110 mm/s the two
 // are 0.575 and 120^2 / 3000 = 4.8. X is at rest: 0.025, and 10^2 / 3000 = 0.0333. The two are at a
 // right angle.
-constexpr double kX = 0.025 + 0.033333;
+constexpr double kWayOfXMm = 0.025 + 0.033333;
 
 TEST_F(DistanceNeedTest, ThePartsAreThoseOfTheFormulas) {
     const DistanceNeed need = distance_need(m, falling(100, 10));
-    const double free = std::hypot(0.525, 0.025), braked = std::hypot(0.525 + 4.033333, kX);
-    const double placed = std::hypot(0.525 + 4.033333 + 0.01, kX + 0.001);
+    const double free = std::hypot(0.525, 0.025), braked = std::hypot(0.525 + 4.033333, kWayOfXMm);
+    const double placed = std::hypot(0.525 + 4.033333 + 0.01, kWayOfXMm + 0.001);
     EXPECT_NEAR(need.until_braking_mm, free, 1e-4);
     EXPECT_NEAR(need.braking_mm, braked - free, 1e-4);
     EXPECT_NEAR(need.position_error_mm, placed - braked, 1e-5);
-    EXPECT_NEAR(need.speed_uncertainty_mm, std::hypot(5.375 + 0.01, kX + 0.001) - placed, 1e-5);
+    EXPECT_NEAR(need.speed_uncertainty_mm, std::hypot(5.375 + 0.01, kWayOfXMm + 0.001) - placed,
+                1e-5);
     EXPECT_EQ(need.margin_mm, 2);
     EXPECT_EQ(need.arithmetic_mm, kPlacementErrorMm);
-    EXPECT_NEAR(need.sum_mm(), 2 + std::hypot(5.375 + 0.01, kX + 0.001), 1e-5);
+    EXPECT_NEAR(need.sum_mm(), 2 + std::hypot(5.375 + 0.01, kWayOfXMm + 0.001), 1e-5);
 }
 
 TEST_F(DistanceNeedTest, WhereSpeedIsExactNoneOfItIsUncertainty) {
     const DistanceNeed need = distance_need(m, falling(100, 0));
     EXPECT_NEAR(need.speed_uncertainty_mm, 0, 1e-9);
-    EXPECT_NEAR(need.sum_mm(), 2 + std::hypot(0.525 + 4.033333 + 0.01, kX + 0.001), 1e-5);
+    EXPECT_NEAR(need.sum_mm(), 2 + std::hypot(0.525 + 4.033333 + 0.01, kWayOfXMm + 0.001), 1e-5);
 }
 
 // Of a jog or a path the reach is one whole.

@@ -18,7 +18,7 @@
 namespace axg::test {
 namespace {
 
-constexpr std::array<double, 5> kStart{};
+constexpr std::array<double, 5> kZeroPositions{};
 
 /// As it is deployed, with an engine that proves everything.
 class LoopNode {
@@ -121,7 +121,7 @@ class OperatorLoop : public testing::Test {
         out.can.permit_version = 2;
         return out;
     }();
-    MotionBoard board{machine, kStart, make_approach(machine, to_the_right()), {}};
+    MotionBoard board{machine, kZeroPositions, make_approach(machine, to_the_right()), {}};
     LoopNode node{machine};
     ClosedLoop loop{board, {}, node.node()};
     OperatorPanel panel;
@@ -164,7 +164,7 @@ TEST_F(OperatorLoop, ABoardMovesStopsAndIsPermittedAgainByFramesAlone) {
 // The same run with and without a panel that asks without a pause: no permit leaves later for it.
 TEST_F(OperatorLoop, NoPermitWaitsForAPanelThatAsksWithoutAPause) {
     const auto permits_of = [this](bool has_panel) {
-        MotionBoard other(machine, kStart, make_approach(machine, to_the_right()), {});
+        MotionBoard other(machine, kZeroPositions, make_approach(machine, to_the_right()), {});
         LoopNode guard(machine);
         std::vector<std::int64_t> left_us;
         LoopGuard wired = guard.node();

@@ -10,7 +10,7 @@
 namespace axg {
 namespace {
 
-constexpr std::int64_t kStart = 1'000'000;
+constexpr std::int64_t kSampleZeroUs = 1'000'000;
 
 CanLayout layout_of_two() {
     CanLayout layout;
@@ -19,8 +19,8 @@ CanLayout layout_of_two() {
 }
 
 /// A board that latches a sample every 1 ms, and a guard that knows its session.
-struct Fixture {
-    explicit Fixture(bool is_jogging = false, std::int64_t permit_us = 0)
+struct Permit2Fixture {
+    explicit Permit2Fixture(bool is_jogging = false, std::int64_t permit_us = 0)
         : watch(layout, is_jogging, permit_us) {}
 
     void latch() {
@@ -38,7 +38,7 @@ struct Fixture {
         }
     }
     [[nodiscard]] static std::int64_t instant_of(std::uint64_t sample) {
-        return kStart + 1000 * static_cast<std::int64_t>(sample);
+        return kSampleZeroUs + 1000 * static_cast<std::int64_t>(sample);
     }
     Permit2 permit(std::uint64_t sample, PermitWord word = PermitWord::run) {
         return {.word = word,
@@ -72,104 +72,105 @@ struct Fixture {
 
 // The first pair only begins the live counter; then three in a row.
 TEST(Permit2Watch, TheFirstMotionNeedsThreePermitsInARow) {
-    Fixture fixture;
+    Permit2Fixture fixture;
     fixture.run(3);
     EXPECT_EQ(fixture.watch.valid_until_us(), INT64_MIN);
     EXPECT_EQ(fixture.watch.permits(), 2U);
     EXPECT_EQ(fixture.watch.refused(), 1U);
     fixture.run(1);
-    EXPECT_EQ(fixture.watch.certified_us(), kStart + 3000);
-    EXPECT_EQ(fixture.watch.valid_until_us(), kStart + 6000);
+    EXPECT_EQ(fixture.watch.certified_us(), kSampleZeroUs + 3000);
+    EXPECT_EQ(fixture.watch.valid_until_us(), kSampleZeroUs + 6000);
 }
 
 TEST(Permit2Watch, APermitHoldsForNPeriodsFromItsSampleOverEveryLap) {
-    Fixture fixture;
+    Permit2Fixture fixture;
     fixture.run(700);
     EXPECT_EQ(fixture.watch.permits(), 699U);
-    EXPECT_EQ(fixture.watch.valid_until_us(), Fixture::instant_of(699) + 3000);
+    EXPECT_EQ(fixture.watch.valid_until_us(), Permit2Fixture::instant_of(699) + 3000);
     EXPECT_EQ(fixture.watch.speed_cap(), 250);
     EXPECT_FALSE(fixture.watch.is_slow());
 }
 
 TEST(Permit2Watch, AnAnswerForAnotherLapOrNonceIsNone) {
-    Fixture fixture;
+    Permit2Fixture fixture;
     fixture.run(300);
     const std::uint64_t before = fixture.watch.permits();
     fixture.latch();
     Permit2 other = fixture.permit(300);
     other.lap = 0;
-    fixture.send(other, Fixture::instant_of(300) + 300);
+    fixture.send(other, Permit2Fixture::instant_of(300) + 300);
     other = fixture.permit(300);
     other.nonce ^= 1;
-    fixture.send(other, Fixture::instant_of(300) + 400);
+    fixture.send(other, Permit2Fixture::instant_of(300) + 400);
     EXPECT_EQ(fixture.watch.permits(), before);
-    fixture.send(fixture.permit(300), Fixture::instant_of(300) + 500);
+    fixture.send(fixture.permit(300), Permit2Fixture::instant_of(300) + 500);
     EXPECT_EQ(fixture.watch.permits(), before + 1);
 }
 
 TEST(Permit2Watch, AdviceIsThatOfTheNewestPermit) {
-    Fixture fixture;
+    Permit2Fixture fixture;
     fixture.run(9);
     fixture.latch();
     Permit2 slow = fixture.permit(9, PermitWord::slow);
     slow.cap = 60;
     slow.mask = 0xFF;
-    fixture.send(slow, Fixture::instant_of(9) + 500);
+    fixture.send(slow, Permit2Fixture::instant_of(9) + 500);
     EXPECT_TRUE(fixture.watch.is_slow());
     EXPECT_EQ(fixture.watch.speed_cap(), 60);
-    EXPECT_EQ(fixture.watch.valid_until_us(), Fixture::instant_of(9) + 3000);
+    EXPECT_EQ(fixture.watch.valid_until_us(), Permit2Fixture::instant_of(9) + 3000);
     EXPECT_EQ(fixture.watch.ack_flags(), 0) << "this board promises no cap, so it names no permit";
 }
 
 TEST(Permit2Watch, InMotionAPermitMustComeBeforeTheLastRanOut) {
     for (const bool is_moving : {false, true}) {
-        Fixture fixture;
+        Permit2Fixture fixture;
         fixture.run(10);
         if (is_moving) {
-            fixture.watch.begin(Fixture::instant_of(10) - 100);
+            fixture.watch.begin(Permit2Fixture::instant_of(10) - 100);
         }
         fixture.latch_until(13);  // that of sample 9 ends with sample 12
-        fixture.send(fixture.permit(12), Fixture::instant_of(12) + 500);
-        EXPECT_EQ(fixture.watch.certified_us(), Fixture::instant_of(is_moving ? 9 : 12));
+        fixture.send(fixture.permit(12), Permit2Fixture::instant_of(12) + 500);
+        EXPECT_EQ(fixture.watch.certified_us(), Permit2Fixture::instant_of(is_moving ? 9 : 12));
     }
 }
 
 // After a motion that ended by itself the next one may begin.
 TEST(Permit2Watch, AtRestAPermitMayRunOut) {
-    Fixture fixture;
+    Permit2Fixture fixture;
     fixture.run(10);
-    fixture.watch.begin(Fixture::instant_of(10) - 100);
-    fixture.watch.rest(Fixture::instant_of(10));
+    fixture.watch.begin(Permit2Fixture::instant_of(10) - 100);
+    fixture.watch.rest(Permit2Fixture::instant_of(10));
     fixture.latch_until(13);
-    fixture.send(fixture.permit(12), Fixture::instant_of(12) + 500);
-    EXPECT_EQ(fixture.watch.certified_us(), Fixture::instant_of(12));
+    fixture.send(fixture.permit(12), Permit2Fixture::instant_of(12) + 500);
+    EXPECT_EQ(fixture.watch.certified_us(), Permit2Fixture::instant_of(12));
 }
 
 TEST(Permit2Watch, TheStopFrameAndInMotionTheWordStopItFromTheirArrival) {
-    Fixture frame;
+    Permit2Fixture frame;
     frame.run(10);
-    frame.watch.on_frame(encode_stop(frame.layout, Fixture::instant_of(9) + 600));
-    frame.watch.on_frame(encode_stop(frame.layout, Fixture::instant_of(9) + 900));
-    EXPECT_EQ(frame.watch.stopped_us(), Fixture::instant_of(9) + 600);
+    frame.watch.on_frame(encode_stop(frame.layout, Permit2Fixture::instant_of(9) + 600));
+    frame.watch.on_frame(encode_stop(frame.layout, Permit2Fixture::instant_of(9) + 900));
+    EXPECT_EQ(frame.watch.stopped_us(), Permit2Fixture::instant_of(9) + 600);
     for (const bool is_moving : {false, true}) {
-        Fixture word;
+        Permit2Fixture word;
         word.run(10);
         if (is_moving) {
-            word.watch.begin(Fixture::instant_of(9) + 500);
+            word.watch.begin(Permit2Fixture::instant_of(9) + 500);
         }
-        word.send(word.permit(9, PermitWord::stop), Fixture::instant_of(9) + 700);
-        EXPECT_EQ(word.watch.stopped_us(), is_moving ? Fixture::instant_of(9) + 700 : kNever);
+        word.send(word.permit(9, PermitWord::stop), Permit2Fixture::instant_of(9) + 700);
+        EXPECT_EQ(word.watch.stopped_us(),
+                  is_moving ? Permit2Fixture::instant_of(9) + 700 : kNever);
     }
 }
 
 TEST(Permit2Watch, AJogAndAnyOtherMotionNeedWordsOfTheirOwn) {
     for (const bool is_jogging : {false, true}) {
         for (const PermitWord word : {PermitWord::run, PermitWord::slow, PermitWord::jog}) {
-            Fixture fixture(is_jogging);
+            Permit2Fixture fixture(is_jogging);
             for (int i = 0; i < 6; ++i) {
                 fixture.latch();
                 fixture.send(fixture.permit(fixture.next - 1, word),
-                             Fixture::instant_of(fixture.next - 1) + 500);
+                             Permit2Fixture::instant_of(fixture.next - 1) + 500);
             }
             EXPECT_EQ(fixture.watch.permits(), (word == PermitWord::jog) == is_jogging ? 5U : 0U);
         }
@@ -177,16 +178,16 @@ TEST(Permit2Watch, AJogAndAnyOtherMotionNeedWordsOfTheirOwn) {
 }
 
 TEST(Permit2Watch, ABoardWithAWrongTimerBelievesAPermitForAsLongAsThatSays) {
-    Fixture fixture(false, 500'000);
+    Permit2Fixture fixture(false, 500'000);
     fixture.run(10);
-    fixture.watch.begin(Fixture::instant_of(10) - 100);
+    fixture.watch.begin(Permit2Fixture::instant_of(10) - 100);
     fixture.latch_until(20);
-    EXPECT_EQ(fixture.watch.valid_until_us(), Fixture::instant_of(9) + 500'000);
+    EXPECT_EQ(fixture.watch.valid_until_us(), Permit2Fixture::instant_of(9) + 500'000);
     EXPECT_EQ(fixture.watch.stopped_us(), kNever);
 }
 
 TEST(Permit2Watch, ASessionFrameLeavesAtOnceEvery100MsAndWithEachLap) {
-    Fixture fixture;
+    Permit2Fixture fixture;
     fixture.latch();
     EXPECT_EQ(fixture.sessions, 1);
     EXPECT_EQ(fixture.session.lap, 0);
@@ -201,10 +202,10 @@ TEST(Permit2Watch, ASessionFrameLeavesAtOnceEvery100MsAndWithEachLap) {
 }
 
 TEST(Permit2Watch, AnAcknowledgedStopHasANewNonce) {
-    Fixture fixture;
+    Permit2Fixture fixture;
     fixture.run(10);
     const std::uint32_t nonce = fixture.session.nonce;
-    const std::int64_t stop_us = Fixture::instant_of(9) + 600;
+    const std::int64_t stop_us = Permit2Fixture::instant_of(9) + 600;
     fixture.watch.on_frame(encode_stop(fixture.layout, stop_us));
     fixture.watch.acknowledge(stop_us + 1999);
     EXPECT_EQ(fixture.watch.stopped_us(), stop_us) << "the guard may still say stop";
@@ -217,7 +218,7 @@ TEST(Permit2Watch, AnAcknowledgedStopHasANewNonce) {
     fixture.run(3);
     EXPECT_EQ(fixture.watch.valid_until_us(), INT64_MIN);
     fixture.run(1);
-    EXPECT_EQ(fixture.watch.valid_until_us(), Fixture::instant_of(16) + 3000);
+    EXPECT_EQ(fixture.watch.valid_until_us(), Permit2Fixture::instant_of(16) + 3000);
 }
 
 }  // namespace

@@ -9,13 +9,13 @@
 namespace axg {
 namespace {
 
-constexpr std::int64_t kStart = 1'000'000;
+constexpr std::int64_t kFirstLatchUs = 1'000'000;
 
-class Fixture {
+class PermitFixture {
   public:
-    Fixture() : watch(layout) {
+    PermitFixture() : watch(layout) {
         for (std::uint8_t k = 0; k < 10; ++k) {
-            watch.on_latch(static_cast<std::uint8_t>(k + 1), kStart + 1000 * k);
+            watch.on_latch(static_cast<std::uint8_t>(k + 1), kFirstLatchUs + 1000 * k);
         }
     }
 
@@ -44,12 +44,12 @@ class Fixture {
 TEST(PermitWatch, AJogAndAnyOtherMotionNeedWordsOfTheirOwn) {
     for (const bool is_jogging : {false, true}) {
         for (const PermitWord word : {PermitWord::run, PermitWord::slow, PermitWord::jog}) {
-            Fixture fixture;
+            PermitFixture fixture;
             fixture.watch = PermitWatch(fixture.layout, is_jogging);
-            fixture.watch.on_latch(1, kStart);
+            fixture.watch.on_latch(1, kFirstLatchUs);
             Permit permit = fixture.permit(0);
             permit.word = word;
-            fixture.send(permit, kStart + 1000);
+            fixture.send(permit, kFirstLatchUs + 1000);
             EXPECT_EQ(fixture.watch.permits() == 1, (word == PermitWord::jog) == is_jogging)
                 << is_jogging << ' ' << static_cast<unsigned>(word);
         }
@@ -57,53 +57,53 @@ TEST(PermitWatch, AJogAndAnyOtherMotionNeedWordsOfTheirOwn) {
 }
 
 TEST(PermitWatch, APermitHoldsForNPeriodsFromItsSample) {
-    Fixture fixture;
+    PermitFixture fixture;
     EXPECT_EQ(fixture.watch.valid_until_us(), INT64_MIN);
-    fixture.send(fixture.permit(4), kStart + 4900);
-    EXPECT_EQ(fixture.watch.certified_us(), kStart + 4000);
-    EXPECT_EQ(fixture.watch.valid_until_us(), kStart + 7000);
+    fixture.send(fixture.permit(4), kFirstLatchUs + 4900);
+    EXPECT_EQ(fixture.watch.certified_us(), kFirstLatchUs + 4000);
+    EXPECT_EQ(fixture.watch.valid_until_us(), kFirstLatchUs + 7000);
     EXPECT_EQ(fixture.watch.permits(), 1U);
 }
 
 TEST(PermitWatch, ABoardWithAWrongTimerBelievesAPermitForAsLongAsThatSays) {
-    Fixture fixture;
+    PermitFixture fixture;
     fixture.watch = PermitWatch(fixture.layout, false, 500'000);
-    fixture.watch.on_latch(5, kStart + 4000);
-    fixture.send(fixture.permit(4), kStart + 4900);
-    EXPECT_EQ(fixture.watch.valid_until_us(), kStart + 504'000);
+    fixture.watch.on_latch(5, kFirstLatchUs + 4000);
+    fixture.send(fixture.permit(4), kFirstLatchUs + 4900);
+    EXPECT_EQ(fixture.watch.valid_until_us(), kFirstLatchUs + 504'000);
 }
 
 TEST(PermitWatch, AnOlderSampleTakesNothingAway) {
-    Fixture fixture;
+    PermitFixture fixture;
     EXPECT_EQ(fixture.watch.speed_cap(), 0) << "no permit, no advice";
     Permit newer = fixture.permit(4);
     newer.speed_cap = 77;
-    fixture.send(newer, kStart + 4900);
+    fixture.send(newer, kFirstLatchUs + 4900);
     Permit older = fixture.permit(3);
     older.speed_cap = 250;
-    fixture.send(older, kStart + 5000);
-    EXPECT_EQ(fixture.watch.valid_until_us(), kStart + 7000);
+    fixture.send(older, kFirstLatchUs + 5000);
+    EXPECT_EQ(fixture.watch.valid_until_us(), kFirstLatchUs + 7000);
     EXPECT_EQ(fixture.watch.speed_cap(), 77) << "the advice of the newest sample";
 }
 
 TEST(PermitWatch, TheNewestSamplesWordSaysWhetherToBeSlow) {
-    Fixture fixture;
+    PermitFixture fixture;
     EXPECT_FALSE(fixture.watch.is_slow());
     Permit slow = fixture.permit(4);
     slow.word = PermitWord::slow;
-    fixture.send(slow, kStart + 4900);
+    fixture.send(slow, kFirstLatchUs + 4900);
     EXPECT_TRUE(fixture.watch.is_slow());
-    EXPECT_EQ(fixture.watch.valid_until_us(), kStart + 7000) << "a permit like any other";
-    fixture.send(fixture.permit(3), kStart + 5000);
+    EXPECT_EQ(fixture.watch.valid_until_us(), kFirstLatchUs + 7000) << "a permit like any other";
+    fixture.send(fixture.permit(3), kFirstLatchUs + 5000);
     EXPECT_TRUE(fixture.watch.is_slow()) << "an older sample's word";
-    fixture.send(fixture.permit(5), kStart + 5900);
+    fixture.send(fixture.permit(5), kFirstLatchUs + 5900);
     EXPECT_FALSE(fixture.watch.is_slow());
 }
 
 TEST(PermitWatch, APermitThatComesAfterItsTimeIsNone) {
     for (const std::int64_t late_us : {2999, 3000}) {
-        Fixture fixture;
-        fixture.send(fixture.permit(4), kStart + 4000 + late_us);
+        PermitFixture fixture;
+        fixture.send(fixture.permit(4), kFirstLatchUs + 4000 + late_us);
         EXPECT_EQ(fixture.watch.permits(), late_us < 3000 ? 1U : 0U);
     }
 }
@@ -111,48 +111,48 @@ TEST(PermitWatch, APermitThatComesAfterItsTimeIsNone) {
 TEST(PermitWatch, InMotionAPermitMustComeBeforeTheLastRanOut) {
     for (const bool is_moving : {false, true}) {
         for (const std::int64_t at_us : {5999, 6000}) {
-            Fixture fixture;
-            fixture.send(fixture.permit(3), kStart + 4000);
+            PermitFixture fixture;
+            fixture.send(fixture.permit(3), kFirstLatchUs + 4000);
             if (is_moving) {
-                fixture.watch.begin(kStart + 4500);
+                fixture.watch.begin(kFirstLatchUs + 4500);
             }
-            fixture.send(fixture.permit(5), kStart + at_us);
+            fixture.send(fixture.permit(5), kFirstLatchUs + at_us);
             const bool is_taken = !is_moving || at_us < 6000;
-            EXPECT_EQ(fixture.watch.valid_until_us(), kStart + (is_taken ? 8000 : 6000));
+            EXPECT_EQ(fixture.watch.valid_until_us(), kFirstLatchUs + (is_taken ? 8000 : 6000));
         }
     }
 }
 
 TEST(PermitWatch, ASampleThatWasNeverSentIsNotBelieved) {
-    Fixture fixture;
+    PermitFixture fixture;
     Permit permit = fixture.permit(4);
     permit.sync_counter = 77;
-    fixture.send(permit, kStart + 5000);
+    fixture.send(permit, kFirstLatchUs + 5000);
     EXPECT_EQ(fixture.watch.permits(), 0U);
     EXPECT_EQ(fixture.watch.refused(), 1U);
 }
 
 TEST(PermitWatch, AWrongSignatureIsNoPermit) {
-    Fixture fixture;
+    PermitFixture fixture;
     Permit permit = fixture.permit(4);
     permit.known_answer_signature ^= 1;
-    fixture.send(permit, kStart + 5000);
+    fixture.send(permit, kFirstLatchUs + 5000);
     EXPECT_EQ(fixture.watch.permits(), 0U);
 }
 
 TEST(PermitWatch, APermitWhoseCounterStandsIsNone) {
-    Fixture fixture;
-    fixture.send(fixture.permit(4), kStart + 4900);
+    PermitFixture fixture;
+    fixture.send(fixture.permit(4), kFirstLatchUs + 4900);
     --fixture.live;
-    fixture.send(fixture.permit(5), kStart + 5900);
-    EXPECT_EQ(fixture.watch.certified_us(), kStart + 4000);
+    fixture.send(fixture.permit(5), kFirstLatchUs + 5900);
+    EXPECT_EQ(fixture.watch.certified_us(), kFirstLatchUs + 4000);
 }
 
 TEST(PermitWatch, NoSingleBitGetsThrough) {
     for (std::uint32_t bit = 0; bit < 64; ++bit) {
         for (const bool is_twin : {false, true}) {
-            Fixture fixture;
-            auto pair = encode_permit(fixture.layout, fixture.permit(4), kStart + 5000);
+            PermitFixture fixture;
+            auto pair = encode_permit(fixture.layout, fixture.permit(4), kFirstLatchUs + 5000);
             pair[is_twin ? 1 : 0].data[bit / 8] ^= static_cast<std::uint8_t>(1U << (bit % 8));
             fixture.watch.on_frame(pair[0]);
             fixture.watch.on_frame(pair[1]);
@@ -163,39 +163,40 @@ TEST(PermitWatch, NoSingleBitGetsThrough) {
 
 TEST(PermitWatch, ATwinLateOrAloneIsNone) {
     for (const std::int64_t late_us : {2000, 2001}) {
-        Fixture fixture;
-        auto pair = encode_permit(fixture.layout, fixture.permit(4), kStart + 4100);
+        PermitFixture fixture;
+        auto pair = encode_permit(fixture.layout, fixture.permit(4), kFirstLatchUs + 4100);
         pair[1].time_us += late_us;
         fixture.watch.on_frame(pair[0]);
         fixture.watch.on_frame(pair[1]);
         EXPECT_EQ(fixture.watch.permits(), late_us == 2000 ? 1U : 0U);
     }
-    Fixture fixture;
-    fixture.watch.on_frame(encode_permit(fixture.layout, fixture.permit(4), kStart + 4100)[1]);
+    PermitFixture fixture;
+    fixture.watch.on_frame(
+        encode_permit(fixture.layout, fixture.permit(4), kFirstLatchUs + 4100)[1]);
     EXPECT_EQ(fixture.watch.permits(), 0U);
 }
 
 TEST(PermitWatch, TheStopFrameAndTheStopWordStopFromTheirArrival) {
-    Fixture frame;
-    frame.send(frame.permit(4), kStart + 4900);
-    frame.watch.on_frame(encode_stop(frame.layout, kStart + 5100));
-    frame.watch.on_frame(encode_stop(frame.layout, kStart + 6100));
-    EXPECT_EQ(frame.watch.stopped_us(), kStart + 5100);
-    Fixture word;
-    word.send(word.permit(4), kStart + 4900);
+    PermitFixture frame;
+    frame.send(frame.permit(4), kFirstLatchUs + 4900);
+    frame.watch.on_frame(encode_stop(frame.layout, kFirstLatchUs + 5100));
+    frame.watch.on_frame(encode_stop(frame.layout, kFirstLatchUs + 6100));
+    EXPECT_EQ(frame.watch.stopped_us(), kFirstLatchUs + 5100);
+    PermitFixture word;
+    word.send(word.permit(4), kFirstLatchUs + 4900);
     Permit stop = word.permit(5);
     stop.word = PermitWord::stop;
-    word.send(stop, kStart + 5200);
-    EXPECT_EQ(word.watch.stopped_us(), kStart + 5200);
+    word.send(stop, kFirstLatchUs + 5200);
+    EXPECT_EQ(word.watch.stopped_us(), kFirstLatchUs + 5200);
 }
 
 TEST(PermitWatch, BeforeTheFirstPermitTheStopWordOnlyMeansNotYet) {
-    Fixture fixture;
+    PermitFixture fixture;
     Permit stop = fixture.permit(2);
     stop.word = PermitWord::stop;
-    fixture.send(stop, kStart + 2900);
+    fixture.send(stop, kFirstLatchUs + 2900);
     EXPECT_EQ(fixture.watch.stopped_us(), kNever);
-    fixture.send(fixture.permit(4), kStart + 4900);
+    fixture.send(fixture.permit(4), kFirstLatchUs + 4900);
     EXPECT_EQ(fixture.watch.permits(), 1U);
 }
 

@@ -29,7 +29,7 @@ std::vector<CanFrame> frames_of(TraceReader& reader) {
     return frames;
 }
 
-Answer read(const std::string& text, const TraceOptions& options = {}) {
+Answer read_log(const std::string& text, const TraceOptions& options = {}) {
     Answer answer;
     const auto reader = read_candump("t.log", text, options);
     answer.frames = frames_of(*reader);
@@ -86,7 +86,7 @@ TEST(CandumpReader, AnswersTheCorpusOnWhichReadersDisagree) {
         {line("123##0112233445566778899"), "refused"},
     };
     for (const auto& [text, wanted] : corpus) {
-        EXPECT_EQ(describe(read(text)), wanted) << text;
+        EXPECT_EQ(describe(read_log(text)), wanted) << text;
     }
 }
 
@@ -141,7 +141,7 @@ TEST(CandumpReader, RefusesOnBothSidesOfEachBound) {
         {"", "0 frames"},
     };
     for (const auto& [text, wanted] : cases) {
-        EXPECT_EQ(describe(read(text)), wanted) << text;
+        EXPECT_EQ(describe(read_log(text)), wanted) << text;
     }
 }
 
@@ -166,12 +166,12 @@ TEST(CandumpReader, ReadsWhatTheConsoleShows) {
         {" (2019-01-09 22:42:07.670704)  can0  123   [2]  11 22\n", "refused"},
     };
     for (const auto& [text, wanted] : cases) {
-        EXPECT_EQ(describe(read(text)), wanted) << text;
+        EXPECT_EQ(describe(read_log(text)), wanted) << text;
     }
 }
 
 TEST(CandumpReader, KeepsTimeDirectionAndBytes) {
-    const Answer answer = read(
+    const Answer answer = read_log(
         "(1547073727.670704) can0 0A1#00fFa9 T\n"
         "(1547073727.670704999) can0 0A1#01 R\n");
     ASSERT_EQ(answer.frames.size(), 2U) << answer.error;
@@ -184,7 +184,7 @@ TEST(CandumpReader, KeepsTimeDirectionAndBytes) {
 }
 
 TEST(CandumpReader, EveryRefusalNamesFileLineGotAndWanted) {
-    const Answer answer = read(line("123#11") + "\n" + line("123#1"));
+    const Answer answer = read_log(line("123#11") + "\n" + line("123#1"));
     EXPECT_EQ(answer.frames.size(), 1U);
     EXPECT_EQ(
         answer.error,
@@ -192,26 +192,26 @@ TEST(CandumpReader, EveryRefusalNamesFileLineGotAndWanted) {
 }
 
 TEST(CandumpReader, ForeignTextCannotReachTheTerminal) {
-    const Answer answer = read("(1.000001) can0 \x1B[31m#11\n");
+    const Answer answer = read_log("(1.000001) can0 \x1B[31m#11\n");
     EXPECT_NE(answer.error.find("\\x1B[31m"), std::string::npos) << answer.error;
     EXPECT_EQ(answer.error.find('\x1B'), std::string::npos);
 }
 
 TEST(CandumpReader, TimeMayNotRunBackwardsBeyondTheTolerance) {
     const std::string text = "(1.000100) can0 123#\n(1.000050) can0 123#\n";
-    EXPECT_NE(read(text).error.find(
+    EXPECT_NE(read_log(text).error.find(
                   "t.log:2: time: invalid value (found \"1.000050 s after 1.000100 s\""),
               std::string::npos)
-        << read(text).error;
-    EXPECT_EQ(read(text, {.backwards_us_max = 50}).frames.size(), 2U);
-    EXPECT_EQ(read(text, {.backwards_us_max = 49}).frames.size(), 1U);
+        << read_log(text).error;
+    EXPECT_EQ(read_log(text, {.backwards_us_max = 50}).frames.size(), 2U);
+    EXPECT_EQ(read_log(text, {.backwards_us_max = 49}).frames.size(), 1U);
 }
 
 TEST(CandumpReader, TwoInterfacesNeedAChoice) {
     const std::string text = "(1.000100) can0 123#\n(1.000200) can1 124#\n(1.000300) can0 125#\n";
-    EXPECT_NE(read(text).error.find("t.log:2: interface: invalid value (found \"can1\""),
+    EXPECT_NE(read_log(text).error.find("t.log:2: interface: invalid value (found \"can1\""),
               std::string::npos);
-    const Answer chosen = read(text, {.device = "can1"});
+    const Answer chosen = read_log(text, {.device = "can1"});
     ASSERT_EQ(chosen.frames.size(), 1U) << chosen.error;
     EXPECT_EQ(chosen.frames[0].id, 0x124U);
 }
@@ -228,7 +228,7 @@ TEST(CandumpReader, LenientSkipsCountsAndKeepsTheFirstReason) {
 
 TEST(CandumpReader, AnEndlessLineIsRefusedNotStored) {
     EXPECT_NE(
-        read(std::string(70'000, '(')).error.find("t.log:1: line: invalid value (found \"(((("),
+        read_log(std::string(70'000, '(')).error.find("t.log:1: line: invalid value (found \"(((("),
         std::string::npos);
 }
 
@@ -255,7 +255,7 @@ TEST(CandumpReader, ATooLongLineIsOneFaultAndReadingGoesOn) {
 }
 
 TEST(CandumpReader, BlankLinesAndAByteOrderMarkArePassedOver) {
-    const auto got = read("\xEF\xBB\xBF" + line("123#11") + "   \n\t\r\n\n" + line("123#22"));
+    const auto got = read_log("\xEF\xBB\xBF" + line("123#11") + "   \n\t\r\n\n" + line("123#22"));
     EXPECT_EQ(got.error, "");
     EXPECT_EQ(got.frames.size(), 2U);
 }

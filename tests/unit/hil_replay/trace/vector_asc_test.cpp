@@ -15,8 +15,8 @@ const std::string kHeader =
     "// version 9.0.0\nBegin Triggerblock Thu Jan 1 00:00:00 1970\n   0.0000 Start of "
     "measurement\n";
 
-std::vector<CanFrame> read(const std::string& text, std::string& error,
-                           const TraceOptions& options = {}) {
+std::vector<CanFrame> read_asc(const std::string& text, std::string& error,
+                               const TraceOptions& options = {}) {
     const auto reader = read_asc("t.asc", text, options);
     std::vector<CanFrame> frames;
     CanFrame frame;
@@ -29,7 +29,7 @@ std::vector<CanFrame> read(const std::string& text, std::string& error,
 
 CanFrame one(const std::string& line) {
     std::string error;
-    const auto frames = read(kHeader + line + "\nEnd TriggerBlock\n", error);
+    const auto frames = read_asc(kHeader + line + "\nEnd TriggerBlock\n", error);
     EXPECT_EQ(error, "") << line;
     EXPECT_EQ(frames.size(), 1U) << line;
     return frames.empty() ? CanFrame{} : frames[0];
@@ -37,7 +37,7 @@ CanFrame one(const std::string& line) {
 
 std::string refusal(const std::string& line) {
     std::string error;
-    const auto frames = read(kHeader + line + "\n", error);
+    const auto frames = read_asc(kHeader + line + "\n", error);
     EXPECT_TRUE(frames.empty()) << line;
     return error;
 }
@@ -84,7 +84,7 @@ TEST(AscReader, ErrorFramesReachTheReceiver) {
 
 TEST(AscReader, TakesTheBaseOfTheHeader) {
     std::string error;
-    const auto frames = read(
+    const auto frames = read_asc(
         "base dec  timestamps relative\n1.0 1 291 Rx d 2 255 10\n"
         "0.5 1 292x Rx d 0\n",
         error);
@@ -97,9 +97,9 @@ TEST(AscReader, TakesTheBaseOfTheHeader) {
 
 TEST(AscReader, AddsTheDateOfTheHeader) {
     std::string error;
-    const auto frames =
-        read("date Sam Sep 30 15:06:13.191 2017\nbase hex  timestamps absolute\n1.5 1 1 Rx d 0\n",
-             error);
+    const auto frames = read_asc(
+        "date Sam Sep 30 15:06:13.191 2017\nbase hex  timestamps absolute\n1.5 1 1 Rx d 0\n",
+        error);
     ASSERT_EQ(frames.size(), 1U) << error;
     EXPECT_EQ(frames[0].time_us, 1'506'783'974'691'000);
 }
@@ -155,23 +155,23 @@ TEST(AscReader, EveryRefusalNamesFileAndLine) {
         EXPECT_EQ(refusal(line).rfind(wanted, 0), 0U) << refusal(line);
     }
     std::string error;
-    EXPECT_TRUE(read("1.0 1 123 Rx d 0\n", error).empty());
+    EXPECT_TRUE(read_asc("1.0 1 123 Rx d 0\n", error).empty());
     EXPECT_NE(error.find("t.asc:1: header"), std::string::npos);
 }
 
 TEST(AscReader, ARequestToSendIsNoFrame) {
     std::string error;
-    EXPECT_TRUE(read(kHeader + "2.5 1 123 TxRq d 1 01\n", error).empty());
+    EXPECT_TRUE(read_asc(kHeader + "2.5 1 123 TxRq d 1 01\n", error).empty());
     EXPECT_EQ(error, "");
 }
 
 TEST(AscReader, TwoChannelsNeedAChoice) {
     const std::string text = kHeader + "2.5 1 123 Rx d 0\n2.6 2 124 Rx d 0\n";
     std::string error;
-    read(text, error);
+    read_asc(text, error);
     EXPECT_NE(error.find("t.asc:8: interface: invalid value (found \"2\""), std::string::npos)
         << error;
-    ASSERT_EQ(read(text, error, {.device = "2"}).size(), 1U);
+    ASSERT_EQ(read_asc(text, error, {.device = "2"}).size(), 1U);
     EXPECT_EQ(error, "");
 }
 
