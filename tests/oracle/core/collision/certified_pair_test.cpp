@@ -65,7 +65,7 @@ T margin_of(double r) {
                                       : static_cast<T>(r * (1.0 + 0x1p-48));
 }
 
-struct Tally {
+struct PairTally {
     unsigned pairs = 0, apart = 0, claims = 0, undecided = 0;
     double widest_mm = 0, widest_relative = 0;  // of pairs that neither axes nor direction decide
 };
@@ -82,7 +82,7 @@ class Judge {
             one(rounded<T>(made.a), rounded<T>(made.b));
         }
     }
-    [[nodiscard]] const Tally& tally() const { return tally_; }
+    [[nodiscard]] const PairTally& tally() const { return tally_; }
 
   private:
     void one(const PlainTriangle<T>& a, const PlainTriangle<T>& b) {
@@ -159,12 +159,12 @@ class Judge {
 
     const CaseKind& kind_;
     Random& random_;
-    Tally tally_;
+    PairTally tally_;
 };
 
 /// Runs every kind; returns the widest undecided distance in units of 9u (Mx + My + Mz).
 template <class T>
-double judge_all(const char* format) {
+double judge_all_pairs(const char* format) {
     Random random(printed_seed(20261121));
     std::printf("%s\n%-36s %7s %7s %8s %10s %12s %9s\n", format, "kind", "pairs", "apart", "claims",
                 "undecided", "widest um", "relative");
@@ -172,7 +172,7 @@ double judge_all(const char* format) {
     for (const CaseKind& kind : kCaseKinds) {
         Judge<T> judge(kind, random);
         judge.run(count_a_kind());
-        const Tally& t = judge.tally();
+        const PairTally& t = judge.tally();
         std::printf("%-36s %7u %7u %8u %10u %12.4g %9.3g\n", kind.name, t.pairs, t.apart, t.claims,
                     t.undecided, 1e3 * t.widest_mm, t.widest_relative);
         if (kind.scale_mm >= 1e-4) {  // below, the constant 2^-100 of the bound takes over
@@ -183,11 +183,11 @@ double judge_all(const char* format) {
 }
 
 TEST(CertifiedPair, FloatNeverClaimsWhatExactArithmeticDenies) {
-    EXPECT_LE(judge_all<float>("float"), 1.0);
+    EXPECT_LE(judge_all_pairs<float>("float"), 1.0);
 }
 
 TEST(CertifiedPair, DoubleNeverClaimsWhatExactArithmeticDenies) {
-    EXPECT_LE(judge_all<double>("double"), 1.0);
+    EXPECT_LE(judge_all_pairs<double>("double"), 1.0);
 }
 
 /// A point beside an axis, less the origin, and how wrong its computed projection is.

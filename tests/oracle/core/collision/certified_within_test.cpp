@@ -52,7 +52,7 @@ struct LocalPair {
     }
 };
 
-struct Tally {
+struct WithinTally {
     unsigned pairs = 0, claims = 0, well_within = 0, claimed_of_those = 0;
 };
 
@@ -63,7 +63,7 @@ double some_margin(std::mt19937_64& random, double distance_mm) {
     return std::max(distance_mm * (1 + off), (random() & 1U) == 0 ? 0x1p-40 : 1e-3);
 }
 
-void judge(std::mt19937_64& random, const CaseKind& kind, Tally& tally) {
+void judge_within(std::mt19937_64& random, const CaseKind& kind, WithinTally& tally) {
     const LocalPair pair(make_case(random, kind, -20));
     const ExactSquare square = pair.distance();
     const double distance_mm = square.mm(), r_mm = some_margin(random, distance_mm);
@@ -81,14 +81,14 @@ void judge(std::mt19937_64& random, const CaseKind& kind, Tally& tally) {
 TEST(CertifiedWithin, IsNeverSaidOfPairsThatAreApart) {
     std::mt19937_64 random(printed_seed(71));
     const unsigned count = count_a_kind();
-    Tally all;
+    WithinTally all;
     for (const CaseKind& kind : kCaseKinds) {
         if (kind.scale_mm > 1e4) {
             continue;  // beyond what the engines take, less an origin nearby
         }
-        Tally tally;
+        WithinTally tally;
         for (unsigned i = 0; i < count && !HasFatalFailure(); ++i) {
-            judge(random, kind, tally);
+            judge_within(random, kind, tally);
         }
         std::printf("%-38s %6u pairs, %6u surely near; well within the margin %6u of %6u\n",
                     kind.name, tally.pairs, tally.claims, tally.claimed_of_those,

@@ -92,14 +92,14 @@ constexpr LeafKind kKinds[] = {
     {"50 m, slivers", 5e4, 0, true},
 };
 
-struct Tally {
+struct MotionTally {
     unsigned cases = 0, claims = 0, without_leaf = 0;
     double worst_error = 0;  // of a coordinate beyond its own rounding, in u h
 };
 
 /// Section 4: |computed - true| <= u |computed| + 8u d, for every coordinate.
 void check_vertices(const Moved1& moved, const Aabb& leaf, const ExactTriangle& truth,
-                    const char* name, Tally& tally) {
+                    const char* name, MotionTally& tally) {
     const double h = std::max({leaf.h[0], leaf.h[1], leaf.h[2]});
     for (std::size_t i = 0; i < 3; ++i) {
         const float got[3] = {moved.v[i].x, moved.v[i].y, moved.v[i].z};
@@ -142,7 +142,7 @@ class Adversary {
         return true;
     }
 
-    void judge(Tally& tally) {
+    void judge(MotionTally& tally) {
         const Triangle &ta = a_.triangles.back(), &tb = b_.triangles.back();
         const ExactTriangle truth = placed(q_.pose, ta);
         const Moved1 moved(q_, a_, b_, leaf_, ta);
@@ -276,7 +276,7 @@ TEST(LeafMotion, ATriangleThatIsNotApartIsNeverClaimedToBe) {
     const unsigned count = exact_count(240, 24);
     unsigned cases = 0, without_leaf = 0;
     for (const LeafKind& kind : kKinds) {
-        Tally tally;
+        MotionTally tally;
         for (unsigned i = 0; i < count && !HasFailure(); ++i) {
             Adversary adversary(random, kind);
             if (adversary.make()) {
@@ -315,7 +315,7 @@ TEST(LeafMotion, NearlyTheWholeTermIsNeeded) {
     }
     const Triangle triangle{v, v, v};
     const Aabb leaf = build_tree(a.triangles).nodes[0].box;
-    Tally tally;
+    MotionTally tally;
     check_vertices(Moved1(q, a, b, leaf, triangle), leaf, placed(q.pose, triangle), "corner",
                    tally);
     EXPECT_GT(tally.worst_error, 4.6) << "in u h, of 5.39";

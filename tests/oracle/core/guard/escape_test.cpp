@@ -21,7 +21,7 @@
 namespace axg::test {
 namespace {
 
-constexpr std::uint64_t kUsual = 60;
+constexpr std::uint64_t kUsualPlaces = 60;
 constexpr int kSteps = 10;  // of a way, that the judge looks at
 
 /// What a way comes to, judged at kSteps places of it.
@@ -46,11 +46,11 @@ Way judge_way(ContactScene& scene, const Positions& from, const EscapeJog& jog,
     return way;
 }
 
-struct Tally {
+struct EscapeTally {
     std::uint64_t places = 0, ways = 0, plain = 0, found = 0, without = 0;
 };
 
-void try_place(Random& random, ContactScene& scene, Tally& tally) {
+void try_place(Random& random, ContactScene& scene, EscapeTally& tally) {
     const Positions at = place_near(random, scene, between(random, 0.03, 3));
     const double clear_mm = judged_mm(scene, at);
     // Some places are nearer than the margin, as after a stop that came too late for it.
@@ -108,12 +108,12 @@ void try_place(Random& random, ContactScene& scene, Tally& tally) {
 
 TEST(Escape, EveryWayOutIsOneAndMostAreFound) {
     Random random(printed_seed(20261127));
-    const std::uint64_t count = count_from_environment(kUsual);
+    const std::uint64_t count = count_from_environment(kUsualPlaces);
     for (const std::string& name : kMachines) {
         const auto scene = make_contact_scene(random, name, kJudgedMm);
         ASSERT_TRUE(scene && scene->containment_test && !scene->touching.empty() &&
                     !scene->clear.empty());
-        Tally tally;
+        EscapeTally tally;
         for (std::uint64_t n = 0; n < count / kMachines.size(); ++n) {
             try_place(random, *scene, tally);
         }
@@ -125,7 +125,7 @@ TEST(Escape, EveryWayOutIsOneAndMostAreFound) {
             static_cast<unsigned long long>(tally.plain),
             static_cast<unsigned long long>(tally.found),
             static_cast<unsigned long long>(tally.without));
-        if (count >= kUsual) {
+        if (count >= kUsualPlaces) {
             EXPECT_GT(tally.ways, tally.places) << "too weak to tell anything";
             EXPECT_GT(10 * tally.found, 8 * tally.plain);
         }

@@ -24,7 +24,7 @@
 namespace axg::test {
 namespace {
 
-constexpr std::uint64_t kUsual = 180;
+constexpr std::uint64_t kUsualJogs = 180;
 
 enum class Board { each_axis, each_axis_with_look_ahead, along_path };
 
@@ -56,7 +56,7 @@ void draw_rules(Random& random, Machine& machine, Board board) {
         board == Board::along_path ? StopPromise::path_keeping : StopPromise::independent;
 }
 
-struct Tally {
+struct JogTally {
     std::uint64_t jogs = 0, moved = 0, stopped = 0, ways = 0, ways_ended = 0, would_touch = 0;
     double least_over_floor_mm = HUGE_VAL;
 };
@@ -103,7 +103,7 @@ double widest_rung_mm(double margin_mm) {
 
 /// Drives, and judges the true axes on the way and where they rest. The least clearance, mm.
 double drive_jog(Random& random, ContactScene& scene, const Place& place, const JogMove& move,
-                 double distance, Tally& tally, bool& has_ended) {
+                 double distance, JogTally& tally, bool& has_ended) {
     Machine& machine = scene.machine();
     set_margins(machine, place.margin_mm);
     std::optional<StopCertificate> certificate = make_stop_certificate(scene.loaded);
@@ -136,7 +136,7 @@ double drive_jog(Random& random, ContactScene& scene, const Place& place, const 
     return least_mm;
 }
 
-void jog_once(Random& random, ContactScene& scene, Board board, Tally& tally) {
+void jog_once(Random& random, ContactScene& scene, Board board, JogTally& tally) {
     const Machine as_loaded = scene.machine();
     draw_rules(random, scene.machine(), board);
     scene.machine().can.permit_version = static_cast<std::uint8_t>(1 + tally.jogs % 2);
@@ -179,8 +179,8 @@ void jog_once(Random& random, ContactScene& scene, Board board, Tally& tally) {
 
 void run_all(Board board, std::uint64_t seed) {
     Random random(printed_seed(seed));
-    const std::uint64_t count = count_from_environment(kUsual);
-    Tally tally;
+    const std::uint64_t count = count_from_environment(kUsualJogs);
+    JogTally tally;
     for (const std::string& name : kMachines) {
         const auto scene = make_contact_scene(random, name, kJudgedMm);
         ASSERT_TRUE(scene && scene->containment_test && !scene->touching.empty() &&
@@ -197,7 +197,7 @@ void run_all(Board board, std::uint64_t seed) {
         static_cast<unsigned long long>(tally.ways_ended),
         static_cast<unsigned long long>(tally.ways),
         static_cast<unsigned long long>(tally.would_touch), tally.least_over_floor_mm);
-    if (count >= kUsual) {
+    if (count >= kUsualJogs) {
         constexpr const char* kWeak = "too weak to tell anything";
         EXPECT_GT(3 * tally.moved, tally.jogs) << kWeak;
         EXPECT_GT(tally.would_touch, 0U) << kWeak;

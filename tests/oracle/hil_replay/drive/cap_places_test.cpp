@@ -19,7 +19,7 @@
 namespace axg::test {
 namespace {
 
-constexpr std::uint64_t kUsual = 500;
+constexpr std::uint64_t kUsualPlaces = 500;
 constexpr double kRapid = 250;  // a cap is in 1/250 of rapid
 constexpr std::array kCaps{1, 2, 3, 5, 8, 12, 25, 50, 125, 250};
 constexpr std::array<std::uint8_t, 2> kPermitSamples{3, 10};
@@ -163,7 +163,7 @@ void look_at(CappedPlaces& machine, Place& place, Totals& totals) {
 class CapPlaces : public testing::TestWithParam<Example> {};
 
 TEST_P(CapPlaces, ACrawlIsProvenWhereTheProgramsSpeedIsNot) {
-    const std::uint64_t looks = count_from_environment(kUsual);
+    const std::uint64_t looks = count_from_environment(kUsualPlaces);
     for (const std::uint8_t permit_samples : kPermitSamples) {
         LoadedMachine loaded;
         ASSERT_TRUE(load_example(GetParam().machine, loaded));

@@ -21,7 +21,7 @@
 namespace axg::test {
 namespace {
 
-constexpr std::uint64_t kUsual = 70;  // more than any of them takes
+constexpr std::uint64_t kUsualSeconds = 70;  // more than any of them takes
 constexpr double kLostShare = 0.05;
 constexpr double kCrawlMm = 1;   // of which a good part is the turning plate, 100 mm off its axis
 constexpr std::uint32_t kZ = 2;  // of each of the machines
@@ -55,7 +55,8 @@ CappedRun drive_capped(LoadedMachine& loaded, const Program& program, bool obeys
     DriveOptions options;
     options.board = promised_board(machine, 1);
     options.board.tick_us = kMotionStepUs;
-    options.time_us_max = static_cast<std::int64_t>(count_from_environment(kUsual)) * 1'000'000;
+    options.time_us_max =
+        static_cast<std::int64_t>(count_from_environment(kUsualSeconds)) * 1'000'000;
     options.speed_share = obeys ? &share : nullptr;
     CappedRun run;
     run.result = drive(machine, chain, {program.start.data(), machine.axes.size()},
@@ -109,7 +110,8 @@ TEST_P(CappedProgram, IsStoppedOnlyWhereNoSpeedIsSlowEnough) {
     print(GetParam().program, run);
     if (is_near(GetParam())) {
         if (run.result.guard_stop.reason == StopReason::none) {
-            EXPECT_LT(count_from_environment(kUsual), 25U) << "it went where nobody may stand";
+            EXPECT_LT(count_from_environment(kUsualSeconds), 25U)
+                << "it went where nobody may stand";
             return;
         }
         ASSERT_EQ(run.result.guard_stop.reason, StopReason::predicted);
@@ -134,7 +136,7 @@ TEST_P(CappedProgram, WhatNoCapCanAvoid) {
     Places places(loaded);
     const std::vector<MotionSample> path =
         path_of(read_example(GetParam().program, loaded.machine), loaded.machine);
-    const std::uint64_t looks = 10 * count_from_environment(kUsual);
+    const std::uint64_t looks = 10 * count_from_environment(kUsualSeconds);
     std::uint64_t too_fast = 0, no_place_to_stand = 0;
     double lost = 0;
     for (std::uint64_t i = 0; i < looks; ++i) {
@@ -176,7 +178,7 @@ TEST(CappedPrograms, RunWhereTheirOwnSpeedWouldBeStopped) {
     print("not obeyed", free);
     const CappedRun capped = drive_capped(loaded, program, true);
     print("obeyed", capped);
-    if (count_from_environment(kUsual) >= 25) {
+    if (count_from_environment(kUsualSeconds) >= 25) {
         EXPECT_EQ(free.result.guard_stop.reason, StopReason::predicted);
         EXPECT_EQ(capped.result.state, BoardState::finished);
     }

@@ -19,7 +19,7 @@
 namespace axg::test {
 namespace {
 
-constexpr std::uint64_t kUsual = 20;  // both are stopped before without a cap
+constexpr std::uint64_t kUsualMachineSeconds = 20;  // both are stopped before without a cap
 
 struct CapRun {
     DriveResult result;
@@ -70,7 +70,8 @@ CapRun drive_with(const Example& example, const CapCase& one) {
     options.lost_s = keeps ? &lost_s : nullptr;
     options.faults.lost = one.lost;
     options.faults.permit_lost = one.permit_lost;
-    options.time_us_max = static_cast<std::int64_t>(count_from_environment(kUsual)) * 1'000'000;
+    options.time_us_max =
+        static_cast<std::int64_t>(count_from_environment(kUsualMachineSeconds)) * 1'000'000;
     DriveObservers observers;
     observers.watch = [&](std::int64_t time_us, std::span<const AxisMotion> axes) {
         const std::uint16_t tool = chain.snapshot().tool;

@@ -46,7 +46,7 @@ struct Block {
 
 using Dice = std::mt19937_64;
 
-double between(Dice& dice, double low, double high) {
+double drawn_between(Dice& dice, double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(dice);
 }
 
@@ -56,26 +56,27 @@ struct Mill {
     double margin_mm = 0;
 
     explicit Mill(Dice& dice) {
-        double height = -between(dice, 40, 120);
+        double height = -drawn_between(dice, 40, 120);
         for (std::uint64_t left = 2 + dice() % 4; left-- > 0;) {
-            const double end = height + between(dice, 2, 40);
-            const double low = between(dice, 1, 25);
-            const double high = dice() % 3 == 0 ? between(dice, 1, 25) : low;
+            const double end = height + drawn_between(dice, 2, 40);
+            const double low = drawn_between(dice, 1, 25);
+            const double high = dice() % 3 == 0 ? drawn_between(dice, 1, 25) : low;
             sections.push_back(
                 {height, end, low, high, dice() % 2 == 0, dice() % 4 == 0 ? 400 : 48});
-            height = end - (dice() % 4 == 0 ? between(dice, 0, 2) : 0);  // some overlap
+            height = end - (dice() % 4 == 0 ? drawn_between(dice, 0, 2) : 0);  // some overlap
         }
         sections.back().is_cutting = false;
         for (std::vector<Block>* const blocks : {&stock, &fixture}) {
             for (std::uint64_t left = 1 + dice() % 3; left-- > 0;) {
                 const double size = dice() % 3 == 0 ? 6 : 80;  // some fit into a holder
-                blocks->push_back(
-                    {{between(dice, 2, size), between(dice, 2, size), between(dice, 2, size)},
-                     {between(dice, -30, 30), between(dice, -30, 30), between(dice, -30, 30)},
-                     dice() % 2 == 0 ? 0 : between(dice, -180, 180)});
+                blocks->push_back({{drawn_between(dice, 2, size), drawn_between(dice, 2, size),
+                                    drawn_between(dice, 2, size)},
+                                   {drawn_between(dice, -30, 30), drawn_between(dice, -30, 30),
+                                    drawn_between(dice, -30, 30)},
+                                   dice() % 2 == 0 ? 0 : drawn_between(dice, -180, 180)});
             }
         }
-        margin_mm = dice() % 2 == 0 ? 0 : between(dice, 0, 5);
+        margin_mm = dice() % 2 == 0 ? 0 : drawn_between(dice, 0, 5);
     }
 
     static std::string text_of(const std::vector<Block>& blocks) {
@@ -269,8 +270,8 @@ TEST(Cutting, WhatIsCalledFarIsFarOfTheTrueSections) {
         Judge whole(mill.text(), false), pruned(mill.text(), true);
         less += pruned.left_out();
         for (int i = 0; i < kPositionsOfMachine; ++i) {
-            const Vec3d nose{between(dice, -60, 60), between(dice, -60, 60),
-                             between(dice, -60, 60)};
+            const Vec3d nose{drawn_between(dice, -60, 60), drawn_between(dice, -60, 60),
+                             drawn_between(dice, -60, 60)};
             const auto said = whole.at(nose), said_of_less = pruned.at(nose);
             for (std::size_t pair = 0; pair < 2; ++pair) {
                 const bool is_stock = pair == 0;
@@ -313,7 +314,7 @@ TEST(Cutting, WhatIsCalledFarIsFarOfTheTrueSections) {
 Vec3d any_nose(Dice& dice) {
     const auto one = [&dice] {
         const auto way = dice() % 8;
-        return way == 0 ? -60.0 : way == 1 ? 60.0 : between(dice, -60, 60);
+        return way == 0 ? -60.0 : way == 1 ? 60.0 : drawn_between(dice, -60, 60);
     };
     const double x = one(), y = one();
     return {x, y, one()};
@@ -333,7 +334,8 @@ TEST(Cutting, WhatIsCertifiedIsFarWhereverTheAxesMayGetTo) {
             const JointBox& box = of_less.box;
             for (int k = 0; k < 6; ++k) {
                 const auto in_box = [&](std::size_t axis) {
-                    const double share = k < 3 ? (dice() % 2 == 0 ? -1 : 1) : between(dice, -1, 1);
+                    const double share =
+                        k < 3 ? (dice() % 2 == 0 ? -1 : 1) : drawn_between(dice, -1, 1);
                     return box.centre[axis] + share * box.half[axis];
                 };
                 const double x = in_box(0), y = in_box(1);

@@ -23,8 +23,8 @@
 namespace axg::test {
 namespace {
 
-constexpr double kModelDetailsMm[] = {0.05, 0.1, 0.2, 0.4};
-constexpr double kOracleErrorMm = 1e-9;
+constexpr double kSidesDetailsMm[] = {0.05, 0.1, 0.2, 0.4};
+constexpr double kSidesErrorMm = 1e-9;
 
 /// A surface at each detail; the tightest share of a certified side that a point came to.
 struct Tightest {
@@ -43,8 +43,8 @@ void judge(const Mesh& whole, std::span<const double> details_mm, std::uint64_t 
         std::printf("%s,%g,%zu,%zu,%.4f,%.4f,%.4f,%.4f\n", whole.name.c_str(), detail_mm,
                     whole.triangles.size(), simple.mesh.triangles.size(), simple.deviation_mm,
                     leaves, simple.excess_mm, sticks_out);
-        EXPECT_LE(leaves, simple.deviation_mm + kOracleErrorMm) << whole.name << ' ' << detail_mm;
-        EXPECT_LE(sticks_out, simple.excess_mm + kOracleErrorMm) << whole.name << ' ' << detail_mm;
+        EXPECT_LE(leaves, simple.deviation_mm + kSidesErrorMm) << whole.name << ' ' << detail_mm;
+        EXPECT_LE(sticks_out, simple.excess_mm + kSidesErrorMm) << whole.name << ' ' << detail_mm;
         EXPECT_LE(simple.deviation_mm, detail_mm);
         EXPECT_LE(simple.excess_mm, detail_mm);
         if (simple.deviation_mm > 0) {
@@ -58,7 +58,7 @@ TEST(SimplifiedSides, NoPointOfEitherIsFartherThanCertified) {
     std::mt19937_64 random(printed_seed(20261220));
     const std::uint64_t count = count_from_environment(20'000);
     const bool is_whole = std::getenv("AXG_COUNT") != nullptr;
-    const std::span<const double> details_mm = std::span(kModelDetailsMm).subspan(is_whole ? 0 : 2);
+    const std::span<const double> details_mm = std::span(kSidesDetailsMm).subspan(is_whole ? 0 : 2);
     std::vector<Mesh> surfaces{{"ball", is_whole ? ball(36, 60) : ball(16, 40)},
                                {"ring", is_whole ? ring(124, 63, 42, 18) : ring(64, 24, 40, 9)}};
     const std::string root = std::string(AXG_SHARED_DATA) + "/machines/probe-basic-xyzac";

@@ -27,7 +27,7 @@ namespace {
 
 using Random = std::mt19937_64;
 
-constexpr double kOracleErrorMm = 1e-9;
+constexpr double kDistanceErrorMm = 1e-9;
 
 struct Case {
     std::string name;
@@ -128,10 +128,10 @@ TEST(Simplified, ProofsHoldForTheWholeSurfaces) {
             q.pose.t[k] = distance * turn.r[k][0];
         }
         const double true_mm = surface_distance(whole[a], whole[b], q.pose, 60);
-        wrong_without += run_query(*engine, q).clearance_mm > true_mm + kOracleErrorMm ? 1 : 0;
+        wrong_without += run_query(*engine, q).clearance_mm > true_mm + kDistanceErrorMm ? 1 : 0;
         q.pose_error_mm = all[a].simple.deviation_mm + all[b].simple.deviation_mm;
         const QueryResult result = run_query(*engine, q);
-        ASSERT_LE(result.clearance_mm, true_mm + kOracleErrorMm) << i;
+        ASSERT_LE(result.clearance_mm, true_mm + kDistanceErrorMm) << i;
         q.kind = QueryKind::farther;
         q.r_mm = between(random, 0, 1) * true_mm;
         const bool is_far = run_query(*engine, q).proof == Proof::far;

@@ -45,7 +45,7 @@ Mesh random_box(Random& random) {
 }
 
 /// A random tree of two to seven bodies; some joints share an axis, some are fixed.
-Machine random_machine(Random& random, std::vector<Mesh>& meshes) {
+Machine random_machine_of(Random& random, std::vector<Mesh>& meshes) {
     Machine m;
     const std::size_t bodies = 2 + random() % 6, axes = 1 + random() % 5;
     for (std::size_t i = 0; i < axes; ++i) {
@@ -96,12 +96,12 @@ std::array<double, kAxesMax> somewhere_in(Random& random, const JointBox& b) {
 }
 
 struct Fixture {
-    std::vector<Mesh> meshes;  // before the machine: random_machine fills it
+    std::vector<Mesh> meshes;  // before the machine: random_machine_of fills it
     Machine machine;
     std::vector<DistanceTree> trees;
     std::vector<BodyExtent> extents;
 
-    explicit Fixture(Random& random) : machine(random_machine(random, meshes)) {
+    explicit Fixture(Random& random) : machine(random_machine_of(random, meshes)) {
         for (const Mesh& mesh : meshes) {
             trees.emplace_back(mesh.triangles);
             extents.push_back(extent_of(mesh));

@@ -24,17 +24,17 @@ namespace {
 
 using Random = std::mt19937_64;
 
-constexpr std::uint32_t kAxes = 3, kC = 2;
+constexpr std::uint32_t kRacingAxes = 3, kTurningAxis = 2;
 constexpr std::uint64_t kUsual = 10'000;
 constexpr double kPeriodS = 1e-3;
 constexpr std::uint64_t kTicks = 1400;
 
-Machine random_machine(Random& random) {
+Machine random_racing_machine(Random& random) {
     Machine m;
-    m.axes.resize(kAxes);
-    for (std::uint32_t i = 0; i < kAxes; ++i) {
+    m.axes.resize(kRacingAxes);
+    for (std::uint32_t i = 0; i < kRacingAxes; ++i) {
         Axis& axis = m.axes[i];
-        const bool is_linear = i != kC;
+        const bool is_linear = i != kTurningAxis;
         axis.kind = is_linear ? AxisKind::linear : AxisKind::rotary;
         axis.unlimited = !is_linear;
         const double size = is_linear ? 1 : 0.01;
@@ -51,13 +51,13 @@ Machine random_machine(Random& random) {
 
 /// What the commands do, piece by piece of one period.
 struct Commanded {
-    std::vector<std::array<AxisMotion, kAxes>> pieces;
+    std::vector<std::array<AxisMotion, kRacingAxes>> pieces;
 
     Commanded(Random& random, const Machine& m) {
-        std::array<AxisMotion, kAxes> now{};
-        std::array<double, kAxes> target{}, share{};
+        std::array<AxisMotion, kRacingAxes> now{};
+        std::array<double, kRacingAxes> target{}, share{};
         for (std::uint64_t k = 0; k < kTicks; ++k) {
-            for (std::uint32_t i = 0; i < kAxes; ++i) {
+            for (std::uint32_t i = 0; i < kRacingAxes; ++i) {
                 if (k % 200 == 0 || random() % 300 == 0) {
                     target[i] = now[i].position + m.axes[i].speed_max * between(random, -1, 1);
                     share[i] = random() % 2 == 0 ? 1 : between(random, 0.05, 1);
@@ -95,7 +95,7 @@ struct Commanded {
 /// Counts as a frame carries them: what the guard hears of a position.
 double heard(double position, std::uint32_t axis, double count) {
     double p = count * std::round(position / count);
-    return axis == kC ? p - 2 * kPi * std::floor(p / (2 * kPi)) : p;
+    return axis == kTurningAxis ? p - 2 * kPi * std::floor(p / (2 * kPi)) : p;
 }
 
 /// @param pace  periods of the commands that one of the board's lasts
@@ -110,7 +110,7 @@ std::uint64_t note_path_all(Random& random, const Commanded& commanded, const Pa
         }
         PathPoints points;
         points.sample = k;
-        for (std::uint32_t i = 0; i < kAxes; ++i) {
+        for (std::uint32_t i = 0; i < kRacingAxes; ++i) {
             const auto said = [&](std::uint64_t sample) {
                 const AxisMotion at = commanded.at(i, pace * static_cast<double>(sample));
                 return heard(at.position, i, options.count[i]);
@@ -133,7 +133,7 @@ Stop weakest_stop(const Machine& m, const Commanded& commanded, double begin) {
     double end = begin;
     while (true) {  // from below: the stretch grows until the stop ends in it
         double p = 1e-12, z = 1e-12;
-        for (std::uint32_t i = 0; i < kAxes; ++i) {
+        for (std::uint32_t i = 0; i < kRacingAxes; ++i) {
             const double speed = commanded.fastest(i, begin, end);
             p = std::max(p, speed / m.axes[i].stopping_min);
             z = std::max(z, speed / m.axes[i].jerk_max);
@@ -156,17 +156,17 @@ struct Seen {
 void expect_in_pieces(Random& random, const Machine& m, const Commanded& commanded,
                       std::uint64_t sample, const PathStretch& stretch,
                       std::span<const JointBox> pieces, const Stop& stop, Seen& seen) {
-    std::array<double, kAxes> off{};
-    for (std::uint32_t i = 0; i < kAxes; ++i) {
+    std::array<double, kRacingAxes> off{};
+    for (std::uint32_t i = 0; i < kRacingAxes; ++i) {
         const double error = m.axes[i].following_error;
         off[i] = random() % 2 == 0 ? (random() % 2 == 0 ? error : -error)
                                    : between(random, -error, error);
     }
     const auto is_inside = [&](const JointBox& box, double at) {
         bool inside = true;
-        for (std::uint32_t i = 0; i < kAxes; ++i) {
+        for (std::uint32_t i = 0; i < kRacingAxes; ++i) {
             double away = commanded.at(i, at).position + off[i] - box.centre[i];
-            if (i == kC) {
+            if (i == kTurningAxis) {
                 away -= 2 * kPi * std::round(away / (2 * kPi));
             }
             inside = inside && std::abs(away) <= box.half[i];
@@ -204,7 +204,7 @@ void expect_in_pieces(Random& random, const Machine& m, const Commanded& command
 Seen run(Random& random, std::uint64_t count, bool forgets_jerk, bool forgets_late_start) {
     Seen seen;
     while (seen.stops < count) {
-        const Machine m = random_machine(random);
+        const Machine m = random_racing_machine(random);
         const Commanded commanded(random, m);
         PathOptions options;
         options.count = {1e-4, 1e-4, 1e-4 * kPi / 180};
@@ -264,7 +264,7 @@ TEST(LookAheadPathProperty, NoPathWithinTheLimitsIsRefused) {
     const std::uint64_t count = count_from_environment(kUsual);
     std::uint64_t paths = 0, points = 0, refused = 0, faster_refused = 0;
     for (; points < 20 * count; ++paths) {
-        const Machine m = random_machine(random);
+        const Machine m = random_racing_machine(random);
         const Commanded commanded(random, m);
         PathOptions options;
         options.count = {1e-4, 1e-4, 1e-4 * kPi / 180};

@@ -21,19 +21,19 @@ namespace {
 
 using Random = std::mt19937_64;
 
-unsigned axis_count() {
+unsigned history_count() {
     const char* const text = std::getenv("AXG_COUNT");
     return text == nullptr ? 4000U : static_cast<unsigned>(std::strtoul(text, nullptr, 10));
 }
 
-constexpr double kStepS = 2e-5;
+constexpr double kTrackStepS = 2e-5;
 
 /// Position, speed and acceleration every 20 us.
 struct Track {
     std::vector<double> position, speed, acceleration;
 
     [[nodiscard]] std::size_t index(double time_s) const {
-        const double at = std::round(time_s / kStepS);
+        const double at = std::round(time_s / kTrackStepS);
         return std::min(static_cast<std::size_t>(std::max(at, 0.0)), position.size() - 1);
     }
 };
@@ -43,7 +43,7 @@ Track drive(Random& random, const Axis& axis, bool jumps, double seconds) {
     Track track;
     double q = between(random, -100, 100), v = between(random, -1, 1) * axis.speed_max, a = 0;
     double until = 0, wanted = 0;
-    for (double t = 0; t < seconds; t += kStepS) {
+    for (double t = 0; t < seconds; t += kTrackStepS) {
         track.position.push_back(q);
         track.speed.push_back(v);
         track.acceleration.push_back(a);
@@ -57,11 +57,11 @@ Track drive(Random& random, const Axis& axis, bool jumps, double seconds) {
         const double room = 0.98 * axis.speed_max;
         double aim = settled > room ? std::min(wanted, 0.0) : wanted;
         aim = settled < -room ? std::max(aim, 0.0) : aim;
-        const double step = axis.jerk_max * kStepS;
+        const double step = axis.jerk_max * kTrackStepS;
         const double next = jumps ? aim : std::clamp(aim, a - step, a + step);
         const double start = jumps ? aim : a;
-        q += kStepS * (v + kStepS * (start / 3 + next / 6));
-        v += 0.5 * (start + next) * kStepS;
+        q += kTrackStepS * (v + kTrackStepS * (start / 3 + next / 6));
+        v += 0.5 * (start + next) * kTrackStepS;
         a = next;
     }
     return track;
@@ -87,9 +87,9 @@ struct Worst {
 void judge_track(Random& random, const Axis& axis, const Track& track, SampleErrors errors,
                  Worst& worst) {
     const double period = errors.period_s * (1 + between(random, -1, 1) * errors.period_share);
-    const double end = static_cast<double>(track.position.size() - 1) * kStepS;
+    const double end = static_cast<double>(track.position.size() - 1) * kTrackStepS;
     const auto samples = static_cast<std::uint64_t>(40e-3 / errors.period_s);
-    const double last = std::floor((end - 2e-3) / kStepS) * kStepS;
+    const double last = std::floor((end - 2e-3) / kTrackStepS) * kTrackStepS;
     const double bias = between(random, -1, 1);
     MotionHistory history;
     std::size_t now = 0;
@@ -110,7 +110,7 @@ void judge_track(Random& random, const Axis& axis, const Track& track, SampleErr
         }
         note_snapshot(history, snapshot, 1);
     }
-    errors.latch_jitter_s += 2 * kStepS;  // instants were rounded to the track's
+    errors.latch_jitter_s += 2 * kTrackStepS;  // instants were rounded to the track's
     const AxisRange range = range_of(history, 0, axis, errors);
     const double v = track.speed[now], a = track.acceleration[now];
     const double slack = 1e-6 * axis.speed_max;
@@ -133,7 +133,7 @@ void judge_track(Random& random, const Axis& axis, const Track& track, SampleErr
 void judge_axes(std::uint64_t seed, bool is_limited, bool is_unlimited_axis) {
     Random random(printed_seed(seed));
     Worst worst;
-    for (unsigned i = 0; i < axis_count() && !testing::Test::HasFailure(); ++i) {
+    for (unsigned i = 0; i < history_count() && !testing::Test::HasFailure(); ++i) {
         const Axis axis = random_axis(random, is_unlimited_axis);
         SampleErrors errors;
         errors.period_s = (random() & 1U) != 0 ? 1e-3 : 2e-3;
@@ -148,7 +148,7 @@ void judge_axes(std::uint64_t seed, bool is_limited, bool is_unlimited_axis) {
         "%u axes, %u with an acceleration better than its limit; at most %.2f of the range "
         "of speeds and %.2f of that of accelerations was used\n",
         worst.judged, worst.tighter, worst.speed, worst.acceleration);
-    if (axis_count() >= 4000) {
+    if (history_count() >= 4000) {
         EXPECT_GT(worst.speed, 0.5) << "a bound this wide would hide a missing term";
         EXPECT_TRUE(!is_limited || worst.tighter > worst.judged / 4);
     }

@@ -23,14 +23,14 @@ namespace {
 
 using Random = std::mt19937_64;
 
-constexpr std::uint32_t kAxes = 2;
-constexpr std::uint64_t kUsual = 20'000, kTicks = 1000;
-constexpr double kPeriodS = 1e-3;
+constexpr std::uint32_t kSingleAxes = 2;
+constexpr std::uint64_t kUsualStops = 20'000, kDrivenTicks = 1000;
+constexpr double kDrivenPeriodS = 1e-3;
 constexpr double kOwnShare = 0.1;  // of acceleration and jerk, for swinging around the commands
 
-Machine random_machine(Random& random) {
+Machine random_single_axes(Random& random) {
     Machine m;
-    m.axes.resize(kAxes);
+    m.axes.resize(kSingleAxes);
     for (Axis& axis : m.axes) {
         axis.speed_max = between(random, 50, 1000);
         axis.acceleration_max = between(random, 1000, 10'000);
@@ -44,12 +44,12 @@ Machine random_machine(Random& random) {
 }
 
 /// One axis: commands in pieces of one period, and a swing around them.
-struct Driven {
+struct DrivenAlone {
     std::vector<AxisMotion> pieces;
     double stretch = 1;  // the board's period, of the nominal one
     double size = 0, rate = 0, phase = 0;
 
-    Driven(Random& random, Axis axis, double period_share) : stretch(period_share) {
+    DrivenAlone(Random& random, Axis axis, double period_share) : stretch(period_share) {
         const Axis whole = axis;
         if (axis.following_error > 0) {
             size = axis.following_error;
@@ -62,23 +62,24 @@ struct Driven {
         }
         AxisMotion now;
         double target = 0, share = 1;
-        for (std::uint64_t k = 0; k < kTicks; ++k) {
+        for (std::uint64_t k = 0; k < kDrivenTicks; ++k) {
             if (k % 150 == 0 || random() % 200 == 0) {
                 target = now.position + whole.speed_max * between(random, -1, 1);
                 share = random() % 2 == 0 ? 1 : between(random, 0.05, 1);
             }
-            now.jerk = approach_jerk(axis, now, target, share, kPeriodS * stretch);
+            now.jerk = approach_jerk(axis, now, target, share, kDrivenPeriodS * stretch);
             pieces.push_back(now);
-            now = moved_on(now, kPeriodS * stretch);
+            now = moved_on(now, kDrivenPeriodS * stretch);
         }
     }
     [[nodiscard]] AxisMotion commanded(double periods) const {
         const auto piece = static_cast<std::size_t>(periods);
-        return moved_on(pieces[piece], (periods - static_cast<double>(piece)) * kPeriodS * stretch);
+        return moved_on(pieces[piece],
+                        (periods - static_cast<double>(piece)) * kDrivenPeriodS * stretch);
     }
     [[nodiscard]] AxisMotion actual(double periods) const {
         AxisMotion at = commanded(periods);
-        const double angle = phase + rate * periods * kPeriodS * stretch;
+        const double angle = phase + rate * periods * kDrivenPeriodS * stretch;
         at.position += size * std::sin(angle);
         at.speed += size * rate * std::cos(angle);
         at.acceleration -= size * rate * rate * std::sin(angle);
@@ -86,18 +87,18 @@ struct Driven {
     }
 };
 
-struct Seen {
+struct SingleStops {
     std::uint64_t stops = 0, outside = 0, not_known = 0;
     double most = 0;  // of the way that a box leaves to an axis when its stop begins
 };
 
-void note_path_all(Random& random, const std::vector<Driven>& axes, double count,
-                   LookAheadPath& path) {
+void note_driven_path(Random& random, const std::vector<DrivenAlone>& axes, double count,
+                      LookAheadPath& path) {
     const double lost = random() % 2 == 0 ? 0 : between(random, 0, 0.1);
-    for (std::uint64_t k = 1; k < kTicks; ++k) {
+    for (std::uint64_t k = 1; k < kDrivenTicks; ++k) {
         PathPoints points;
         points.sample = k;
-        for (std::uint32_t i = 0; i < kAxes; ++i) {
+        for (std::uint32_t i = 0; i < kSingleAxes; ++i) {
             const auto counts = [&](std::uint64_t sample) {
                 const double at = axes[i].commanded(static_cast<double>(sample)).position;
                 return count * std::round(at / count);
@@ -111,11 +112,11 @@ void note_path_all(Random& random, const std::vector<Driven>& axes, double count
     }
 }
 
-void expect_inside(Random& random, const Machine& m, const std::vector<Driven>& axes,
+void expect_inside(Random& random, const Machine& m, const std::vector<DrivenAlone>& axes,
                    std::uint64_t sample, double start, std::span<const JointBox> pieces,
-                   const JointBox& leaf, Seen& seen) {
+                   const JointBox& leaf, SingleStops& seen) {
     bool is_inside = true;
-    for (std::uint32_t i = 0; i < kAxes; ++i) {
+    for (std::uint32_t i = 0; i < kSingleAxes; ++i) {
         const auto look = [&](double position, const JointBox& box) {
             const double away = std::abs(position - box.centre[i]);
             is_inside = is_inside && away <= box.half[i];
@@ -143,12 +144,13 @@ void expect_inside(Random& random, const Machine& m, const std::vector<Driven>& 
     seen.outside += is_inside ? 0 : 1;
 }
 
-Seen run(Random& random, std::uint64_t count, bool forgets_jerk, double early_s) {
-    Seen seen;
+SingleStops run_single_stops(Random& random, std::uint64_t count, bool forgets_jerk,
+                             double early_s) {
+    SingleStops seen;
     while (seen.stops < count) {
-        const Machine m = random_machine(random);
+        const Machine m = random_single_axes(random);
         const double share = 1 + (random() % 2 == 0 ? 0 : between(random, -0.009, 0.009));
-        std::vector<Driven> axes;
+        std::vector<DrivenAlone> axes;
         for (const Axis& axis : m.axes) {
             axes.emplace_back(random, axis, share);
         }
@@ -160,17 +162,18 @@ Seen run(Random& random, std::uint64_t count, bool forgets_jerk, double early_s)
         }
         auto path = LookAheadPath::create(of_guard, options);
         EXPECT_TRUE(path);
-        note_path_all(random, axes, 1e-4, *path);
+        note_driven_path(random, axes, 1e-4, *path);
         const double free_s = between(random, 1e-3, 8e-3);
-        for (std::uint64_t sample = 20; sample + 20 < kTicks; sample += 13) {
+        for (std::uint64_t sample = 20; sample + 20 < kDrivenTicks; sample += 13) {
             std::array<JointBox, kReachPieces> pieces;
             if (!path->reach(sample, free_s - early_s, pieces)) {
                 ++seen.not_known;
                 continue;
             }
             const double late = random() % 2 == 0 ? 1 : between(random, 0, 1);
-            const double start = static_cast<double>(sample) + late * free_s / (kPeriodS * share);
-            const double periods = (free_s - early_s) / (kPeriodS * (1 - kPeriodShare));
+            const double start =
+                static_cast<double>(sample) + late * free_s / (kDrivenPeriodS * share);
+            const double periods = (free_s - early_s) / (kDrivenPeriodS * (1 - kPeriodShare));
             const double of_leaves = (start - static_cast<double>(sample)) / periods * kReachLeaves;
             const auto leaf =
                 std::min<std::size_t>(static_cast<std::size_t>(of_leaves), kReachLeaves - 1);
@@ -183,19 +186,19 @@ Seen run(Random& random, std::uint64_t count, bool forgets_jerk, double early_s)
 
 TEST(PathReach, EveryStopStaysInThePieces) {
     Random random(printed_seed(20261125));
-    const std::uint64_t count = count_from_environment(kUsual);
-    const Seen seen = run(random, count, false, 0);
+    const std::uint64_t count = count_from_environment(kUsualStops);
+    const SingleStops seen = run_single_stops(random, count, false, 0);
     std::printf("%llu stops, worst %.4f of the way left, path not known %llu times\n",
                 static_cast<unsigned long long>(seen.stops), seen.most,
                 static_cast<unsigned long long>(seen.not_known));
     EXPECT_EQ(seen.outside, 0U);
     EXPECT_LT(20 * seen.not_known, seen.stops);
-    const Seen no_jerk = run(random, count / 4, true, 0);
-    const Seen early = run(random, count / 4, false, 1e-3);
+    const SingleStops no_jerk = run_single_stops(random, count / 4, true, 0);
+    const SingleStops early = run_single_stops(random, count / 4, false, 1e-3);
     std::printf("outside: %llu without the jerk of braking, %llu a millisecond early\n",
                 static_cast<unsigned long long>(no_jerk.outside),
                 static_cast<unsigned long long>(early.outside));
-    if (count >= kUsual) {
+    if (count >= kUsualStops) {
         constexpr const char* kWeak = "too weak to tell anything";
         EXPECT_GT(seen.most, 0.95) << kWeak;
         EXPECT_GT(no_jerk.outside, 0U) << kWeak;

@@ -34,7 +34,7 @@ std::uint64_t cycle_count() {
 constexpr std::uint64_t kTelling = 100'000;  // cycles that show what an ablation does
 
 enum : std::uint32_t { kX, kZ, kC, kAxes };
-constexpr double kPeriodS = 1e-3;
+constexpr double kCyclePeriodS = 1e-3;
 constexpr double kWallRadiusMm = 120, kBarMm = 0.3;
 
 // The wall: 80 to 120 mm from the table's axis, 0.1 mm thick, 30 mm high. The bar: 0.3 x 0.3 mm,
@@ -50,7 +50,7 @@ Mesh box_mesh(const char* name, Vec3d low, Vec3d high) {
     return {name, box(narrow(low), narrow(high))};
 }
 
-Machine random_machine(Random& random, bool is_jerk_limited) {
+Machine random_mill(Random& random, bool is_jerk_limited) {
     Machine m;
     m.axes.resize(kAxes);
     for (std::uint32_t i = 0; i < kAxes; ++i) {
@@ -242,11 +242,11 @@ class Approach {
         }
         if (result.has_permit) {
             ++tally.permits;
-            permitted_s_ = static_cast<double>(k) * kPeriodS;
+            permitted_s_ = static_cast<double>(k) * kCyclePeriodS;
         }
         if (result.is_stop) {  // the board may brake at once, or when the permit has run out
-            const double latest = permitted_s_ + late_s_ - static_cast<double>(k) * kPeriodS;
-            stop_s_ = static_cast<double>(k) * kPeriodS +
+            const double latest = permitted_s_ + late_s_ - static_cast<double>(k) * kCyclePeriodS;
+            stop_s_ = static_cast<double>(k) * kCyclePeriodS +
                       ((random_() & 1U) != 0 ? 1 : between(random_, 0, 1)) * std::max(0.0, latest);
         }
     }
@@ -254,10 +254,10 @@ class Approach {
     /// One period in short steps; whether the bodies touched in it.
     bool move(std::uint64_t k) {
         constexpr int kSteps = 10;
-        constexpr double kStepS = kPeriodS / kSteps;
+        constexpr double kStepS = kCyclePeriodS / kSteps;
         bool touched = false;
         for (int i = 0; i < kSteps; ++i) {
-            const double now = static_cast<double>(k) * kPeriodS + i * kStepS;
+            const double now = static_cast<double>(k) * kCyclePeriodS + i * kStepS;
             // The first permit may take some samples; until then the linear axes stand far away.
             const bool has_run_out = permitted_s_ > 0 && now >= permitted_s_ + late_s_ - 1e-9;
             if (!is_braking_ && (has_run_out || now >= stop_s_ - 1e-9)) {
@@ -360,7 +360,7 @@ Tally run_approaches(std::uint64_t seed, Mode mode, bool is_jerk_limited) {
     Tally tally;
     while (tally.cycles < cycle_count()) {
         Random own(random());  // the same set for every mode
-        const Machine machine = random_machine(own, is_jerk_limited);
+        const Machine machine = random_mill(own, is_jerk_limited);
         Approach approach(own, machine, scene, mode);
         const std::uint64_t touched = tally.touched;
         approach.run(tally);

@@ -38,13 +38,13 @@ unsigned starts() {
 constexpr unsigned kStepsAStart = 20000, kDrawsAStart = 200;
 constexpr unsigned kStartsThatTell = 24;  // with fewer, luck decides how near a bound they come
 
-struct Local {
+struct LocalPair {
     sat::V3<float> a[3], b[3];
 };
 
 /// Less a's first vertex.
-Local local(const Pair<float>& p) {
-    Local out;
+LocalPair local_vertices(const Pair<float>& p) {
+    LocalPair out;
     const Vec3f o = p.a[0];
     for (int i = 0; i < 3; ++i) {
         out.a[i] = {p.a[i].x - o.x, p.a[i].y - o.y, p.a[i].z - o.z};
@@ -66,7 +66,7 @@ double largest_share(const sat::AxisGap<float>& g) {
 
 /// Largest gap that is computed, as a share of the bound.
 double share(const Pair<float>& pair, Bound bound) {
-    const Local p = local(pair);
+    const LocalPair p = local_vertices(pair);
     if (bound == Bound::one_axis) {
         const auto scaled = sat::scaled_pair(p.a, p.b, kLeastD);
         const sat::PairAxes<float> x = sat::axes_of(scaled);
@@ -186,7 +186,7 @@ constexpr double kLeastUnitMm = 1e-12;  // below, the constant 2^-100 of the bou
 /// Distance of triangles that are apart, in units of 9u (Mx + My + Mz); below 0: told apart, or so
 /// thin that only double is asked to be sharp.
 double undecided_width(const Pair<float>& pair) {
-    const Local p = local(pair);
+    const LocalPair p = local_vertices(pair);
     const auto scaled = sat::scaled_pair(p.a, p.b, kLeastD);
     const double unit_mm = double(scaled.scale.x) + double(scaled.scale.y) + double(scaled.scale.z);
     const sat::V3<float> direction = sat::closest_direction(scaled, sat::axes_of(scaled)).direction;

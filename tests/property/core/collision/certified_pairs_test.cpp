@@ -64,7 +64,7 @@ T coordinate(const Vec3<T>& v, int k) {
 
 /// Less an origin; the vertices are exact, so d is the least that the theorem allows.
 template <class T>
-sat::TrianglePair<T> local_pair(const Pair<T>& pair, const Vec3<T>& origin) {
+sat::TrianglePair<T> pair_less_origin(const Pair<T>& pair, const Vec3<T>& origin) {
     sat::TrianglePair<T> p;
     T most[3] = {0, 0, 0};
     const auto local = [&](const Vec3<T>& v) {
@@ -216,7 +216,7 @@ class Judge {
 
     /// One lane by itself gives what many give, and each form of the axes the same.
     void compare_alone(const Pair<float>& pair, bool apart) const {
-        const sat::TrianglePair<float> p = local_pair(pair, origin_of(pair, index_));
+        const sat::TrianglePair<float> p = pair_less_origin(pair, origin_of(pair, index_));
         const sat::PairAxes<float> axes = sat::axes_of(p);
         const sat::V3<float> direction = sat::closest_direction(p, axes).direction;
         const bool by_17 = sat::separated_17<false>(p, 0.0F);
@@ -228,7 +228,7 @@ class Judge {
 
     /// What the engine does with a pair that float does not tell apart.
     void recheck(const Pair<double>& wide) {
-        const bool apart = kernels_[0]->apart_in_double(local_pair(wide, wide.a[0]));
+        const bool apart = kernels_[0]->apart_in_double(pair_less_origin(wide, wide.a[0]));
         tally_.recheck_apart += apart ? 1 : 0;
         if (!apart && !is_picked(index_, kLeftEvery)) {
             return;
@@ -247,7 +247,7 @@ class Judge {
 
     /// Margins at the distance and a few bits beside it.
     void check_margins(const Pair<float>& pair, double certified_mm) const {
-        const sat::TrianglePair<float> p = local_pair(pair, origin_of(pair, index_));
+        const sat::TrianglePair<float> p = pair_less_origin(pair, origin_of(pair, index_));
         const sat::PairAxes<float> axes = sat::axes_of(p);
         const sat::V3<float> direction = sat::closest_direction(p, axes).direction;
         const mpq_class square = lab::squared_distance(lab::in_double(pair));
@@ -273,7 +273,7 @@ class Judge {
     /// Pairs whose vertices are doubles: the double test by itself.
     void judge_double() const {
         const Pair<double> pair = lab::make_pair_case<double>(category_, seed_, index_);
-        const sat::TrianglePair<double> p = local_pair(pair, pair.a[index_ % 3]);
+        const sat::TrianglePair<double> p = pair_less_origin(pair, pair.a[index_ % 3]);
         const bool apart = sat::apart_in_double<false>(p, 0.0);
         for (const LaneKernels* const kernels : kernels_) {
             EXPECT_EQ(kernels->apart_in_double(p), apart) << kernels->name << where();

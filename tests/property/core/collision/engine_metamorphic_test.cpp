@@ -20,7 +20,7 @@ namespace {
 
 using test::run_query;
 
-std::uint32_t query_count(std::uint32_t usual) {
+std::uint32_t compared_count(std::uint32_t usual) {
 #if !defined(NDEBUG)
     usual /= 10;
 #endif
@@ -95,20 +95,20 @@ struct Compared {
     }
 };
 
-struct Fixture {
+struct DrawnSurfaces {
     test::Draw draw{test::printed_seed(20261206)};
     std::vector<Mesh> meshes = test::random_surfaces(draw);
     CpuEngine engine = *test::engine_over(meshes);
 };
 
 TEST(EngineMetamorphic, ACommonExactMotionChangesNothing) {
-    Fixture fixture;
+    DrawnSurfaces fixture;
     std::vector<CpuEngine> engines;
     for (const Motion& m : kMotions) {
         engines.push_back(*test::engine_over(moved(m, fixture.meshes)));
     }
     Compared all;
-    const std::uint32_t count = query_count(3000);
+    const std::uint32_t count = compared_count(3000);
     for (std::uint32_t i = 0; i < count && !HasFailure(); ++i) {
         Query q =
             test::random_query(fixture.draw, static_cast<std::uint32_t>(fixture.meshes.size()));
@@ -124,9 +124,9 @@ TEST(EngineMetamorphic, ACommonExactMotionChangesNothing) {
 }
 
 TEST(EngineMetamorphic, SwappingTheBodiesChangesNothing) {
-    Fixture fixture;
+    DrawnSurfaces fixture;
     Compared all;
-    const std::uint32_t count = query_count(10000);
+    const std::uint32_t count = compared_count(10000);
     for (std::uint32_t i = 0; i < count && !HasFailure(); ++i) {
         Query q =
             test::random_query(fixture.draw, static_cast<std::uint32_t>(fixture.meshes.size()));

@@ -25,7 +25,7 @@ constexpr double kBandsMost = 64;
 /// What float alone leaves undecided, as a rule: twice 9u <|L|, M + d> of a vector of length 1,
 /// where no coordinate exceeds C; what the pose error counts for; and what a margin is rounded up
 /// by.
-double band_mm(const Query& query, double reach_a_mm, double reach_b_mm) {
+double query_band_mm(const Query& query, double reach_a_mm, double reach_b_mm) {
     double t = 0;
     for (const double x : query.pose.t) {
         t = std::max(t, std::fabs(x));
@@ -50,7 +50,8 @@ class FloatOnly : public testing::Test {
         return q;
     }
     [[nodiscard]] double band_of(const Query& q) const {
-        return band_mm(q, engine->trees()[q.mesh_a].reach_mm, engine->trees()[q.mesh_b].reach_mm);
+        return query_band_mm(q, engine->trees()[q.mesh_a].reach_mm,
+                             engine->trees()[q.mesh_b].reach_mm);
     }
     /// Of a box: nothing is tested in double, whatever the capacity.
     QueryResult in_float(Query q, double r_mm) {

@@ -46,7 +46,7 @@ double distance_mm(const Vertices<float>& v) {
 }
 
 /// Twice the bound of a vector of length 1: what float leaves undecided, as a rule.
-double band_mm(const Vertices<float>& v) {
+double vertex_band_mm(const Vertices<float>& v) {
     float most = 0;
     for (const auto* side : {v.a, v.b}) {
         for (int i = 0; i < 3; ++i) {
@@ -107,7 +107,7 @@ class MarginAxes : public testing::Test {
         return v;
     }
     static void judge(const Vertices<float>& v, Tallies& tallies) {
-        const double distance = distance_mm(v), band = band_mm(v);
+        const double distance = distance_mm(v), band = vertex_band_mm(v);
         if (!(distance > 0)) {
             return;
         }

@@ -12,16 +12,17 @@
 namespace axg::test {
 namespace {
 
-constexpr std::uint64_t kUsual = 1000;
+constexpr std::uint64_t kUsualOfEachRule = 1000;
 
 ApproachTally run(const char* name, Wrong wrong, Aim aim, std::uint64_t share = 1) {
-    const std::uint64_t count = std::max<std::uint64_t>(1, count_from_environment(kUsual) / share);
+    const std::uint64_t count =
+        std::max<std::uint64_t>(1, count_from_environment(kUsualOfEachRule) / share);
     const ApproachTally tally = run_approaches(printed_seed(20261128), count, wrong, aim);
     print(name, tally);
     return tally;
 }
 bool is_telling() {
-    return count_from_environment(kUsual) >= kUsual;
+    return count_from_environment(kUsualOfEachRule) >= kUsualOfEachRule;
 }
 
 TEST(CapAblation, AsTheyAreNoneTouches) {
@@ -114,7 +115,8 @@ DriveResult drive_far(ApproachScene& scene, std::uint64_t seed, std::uint32_t st
 
 TEST(CapAblation, SamplesThatAreStaleAfterThreePeriods) {
     const std::uint64_t seed = printed_seed(20261128);
-    const std::uint64_t count = std::max<std::uint64_t>(1, count_from_environment(kUsual) / 25);
+    const std::uint64_t count =
+        std::max<std::uint64_t>(1, count_from_environment(kUsualOfEachRule) / 25);
     ApproachScene scene;
     const Machine as_made = scene.loaded.machine;
     // Three lost frames of one id have the receiver begin anew with it; further losses then may

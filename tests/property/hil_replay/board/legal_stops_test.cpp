@@ -29,7 +29,7 @@ namespace {
 
 using Random = std::mt19937_64;
 
-struct Case {
+struct StopCase {
     Machine machine;
     std::uint64_t motion_seed = 0;
     std::array<double, kAxesMax> start{};
@@ -37,8 +37,8 @@ struct Case {
     std::uint64_t stop_at = 0;  // sample
 };
 
-Case random_case(Random& random, StopPromise promise) {
-    Case c;
+StopCase random_stop_case(Random& random, StopPromise promise) {
+    StopCase c;
     c.machine = motion_test_machine();
     for (Axis& axis : c.machine.axes) {
         const double unit = axis.kind == AxisKind::rotary ? 0.01 : 1;
@@ -104,7 +104,7 @@ LimitRules rules_of(const Machine& machine) {
 }
 
 /// One motion with its stop, as the guard sees it.
-Watched watch(const Case& c, const LimitRules& rules) {
+Watched watch(const StopCase& c, const LimitRules& rules) {
     const Machine& machine = c.machine;
     MotionBoard board(machine, {c.start.data(), machine.axes.size()},
                       make_curve(machine, c.motion_seed), c.board);
@@ -150,7 +150,7 @@ TEST_P(LegalStops, ShowNoBrokenLimit) {
     const std::uint64_t count = count_from_environment(400);
     std::uint64_t excused = 0;
     for (std::uint64_t n = 0; n < count; ++n) {
-        const Case c = random_case(random, GetParam());
+        const StopCase c = random_stop_case(random, GetParam());
         const Watched one = watch(c, rules_of(c.machine));
         excused += one.excused;
         ASSERT_EQ(one.fact.kind, LimitKind::none)
@@ -175,7 +175,7 @@ unsigned accused(StopPromise promise, Change change) {
     Random random(20261215);
     unsigned count = 0;
     for (int n = 0; n < 200; ++n) {
-        const Case c = random_case(random, promise);
+        const StopCase c = random_stop_case(random, promise);
         LimitRules rules = rules_of(c.machine);
         change(rules);
         count += watch(c, rules).fact.kind != LimitKind::none ? 1 : 0;

@@ -173,7 +173,7 @@ double stop_time_max(const Axis& axis) {
     return (a + d) / j + axis.speed_max / d;
 }
 
-Outcome run(const Case& c, int cycles) {
+Outcome run_case(const Case& c, int cycles) {
     Outcome outcome;
     MotionBoard board(c.machine, {c.start.data(), c.machine.axes.size()},
                       make_approach(c.machine, c.approach), c.board);
@@ -226,7 +226,7 @@ TEST_P(BoardFault, BrakingBeginsWithinNPeriodsAndTheReaction) {
     for (std::uint64_t n = 0; n < count; ++n) {
         Case c = random_case(random);
         c.bus.faults = faults_of(GetParam(), c.fault_us);
-        const Outcome outcome = run(c, 3000);
+        const Outcome outcome = run_case(c, 3000);
         const std::int64_t bound_us =
             outcome.stop.certified_us +
             std::int64_t{c.machine.can.permit_samples.most} * c.machine.can.sample_us +
@@ -265,7 +265,7 @@ TEST(MotionBoard, AHealthyGuardNeverStopsIt) {
     for (std::uint64_t n = std::min<std::uint64_t>(count_from_environment(100), 10000); n > 0;
          --n) {
         const Case c = random_case(random);
-        ASSERT_EQ(run(c, 400).state, BoardState::moving);
+        ASSERT_EQ(run_case(c, 400).state, BoardState::moving);
     }
 }
 
@@ -278,7 +278,8 @@ TEST(MotionBoard, OneCycleLateIsBorneFromFourPeriodsOn) {
         Case c = random_case(random);
         c.bus.faults.late_from_us = c.fault_us;
         const bool is_borne = c.machine.can.permit_samples.most > 3;
-        ASSERT_EQ(run(c, 3000).stop.why, is_borne ? BoardStop::none : BoardStop::permit_ran_out);
+        ASSERT_EQ(run_case(c, 3000).stop.why,
+                  is_borne ? BoardStop::none : BoardStop::permit_ran_out);
     }
 }
 
@@ -290,7 +291,7 @@ TEST(MotionBoard, WithoutTheDeadManItMovesOn) {
         Case c = random_case(random);
         c.bus.faults = faults_of(n % 2 == 0 ? Fault::killed : Fault::stuck, c.fault_us);
         lab::forget_dead_man(c.board);
-        ASSERT_EQ(run(c, 400).state, BoardState::moving);
+        ASSERT_EQ(run_case(c, 400).state, BoardState::moving);
     }
 }
 
@@ -306,7 +307,7 @@ TEST(MotionBoard, LossesStopItInTimeOrNotAtAll) {
         c.machine.can.stale_after_us = 1000U * c.machine.can.permit_samples.most;
         c.bus.faults.lost = is_little ? 0.001 : between(random, 0.01, 0.05);
         c.bus.faults.corrupted = is_little ? 0 : 0.01;
-        const Outcome outcome = run(c, 400);
+        const Outcome outcome = run_case(c, 400);
         if (outcome.stop.why == BoardStop::none) {
             continue;
         }
@@ -329,11 +330,11 @@ TEST(MotionBoard, DamagedPermitsNeverSetItInMotion) {
     for (const auto version : {std::uint8_t{1}, std::uint8_t{2}}) {
         c.machine.can.permit_version = version;
         c.bus.faults = {.corrupted = 1};
-        EXPECT_EQ(run(c, 2000).state, BoardState::waiting);
+        EXPECT_EQ(run_case(c, 2000).state, BoardState::waiting);
         c.bus.faults = {.permit_lost = 1};
-        EXPECT_EQ(run(c, 200).state, BoardState::waiting);
+        EXPECT_EQ(run_case(c, 200).state, BoardState::waiting);
         c.bus.faults = {};
-        EXPECT_EQ(run(c, 200).state, BoardState::moving);
+        EXPECT_EQ(run_case(c, 200).state, BoardState::moving);
     }
 }
 
@@ -342,9 +343,9 @@ TEST(MotionBoard, TheSameSeedGivesTheSameRest) {
     Case c = random_case(random);
     c.bus.faults.lost = 0.02;
     c.bus.faults.killed_from_us = c.fault_us;
-    const Outcome first = run(c, 3000), again = run(c, 3000);
+    const Outcome first = run_case(c, 3000), again = run_case(c, 3000);
     ++c.board.seed;
-    const Outcome other = run(c, 3000);
+    const Outcome other = run_case(c, 3000);
     bool differs = false;
     for (std::size_t i = 0; i < c.machine.axes.size(); ++i) {
         EXPECT_EQ(first.rest[i].position, again.rest[i].position);

@@ -169,8 +169,8 @@ struct Seen {
     double share = 0;  // of a limit, the most of any
 };
 
-void follow(const Machine& machine, const Drawing& drawing, const RandomProgram& program,
-            const Program& moves, double tolerance_mm, Seen& seen) {
+void follow_tip(const Machine& machine, const Drawing& drawing, const RandomProgram& program,
+                const Program& moves, double tolerance_mm, Seen& seen) {
     const MotionLimits limits = make_motion_limits(machine);
     const MotionOptions motion;
     MotionSampler sampler(moves, limits, motion);
@@ -234,7 +234,7 @@ TEST_P(TipControlOn, RandomProgramsKeepTheTipOnItsLine) {
             continue;
         }
         SCOPED_TRACE("round " + std::to_string(round) + "\n" + program.text);
-        follow(machine, drawing, program, reading.program, is_exact ? 0 : 0.02, seen);
+        follow_tip(machine, drawing, program, reading.program, is_exact ? 0 : 0.02, seen);
     }
     std::printf(
         "%s: %llu samples, %llu of them turning, %llu corners blended, %llu of %d programs "
