@@ -71,7 +71,7 @@ run_ctest() { # PRESET [CTEST OPTION...]
 check_preset() { # PRESET LABELS_LEFT_OUT [CMAKE OPTION...]
     local preset=$1 without=$2
     shift 2
-    step "$preset configure" configure_preset "$preset" "$@" || return 0
+    step "$preset configure" configure_preset "$preset" $tests "$@" || return 0
     step "$preset build" build_preset "$preset" || return 0
     check_tests "$preset" -LE "^($without)$"
 }
@@ -80,7 +80,7 @@ check_labels() { # PRESET "TARGET..." LABEL...: these, the programs, and of the 
     local preset=$1 targets labels
     read -ra targets <<<"axguard axguardd $2"
     shift 2
-    step "$preset configure" configure_preset "$preset" -DAXG_WERROR=ON $unity || return 0
+    step "$preset configure" configure_preset "$preset" -DAXG_WERROR=ON $rooms $tests || return 0
     step "$preset build" build_preset "$preset" "${targets[@]}" "${@/%/_tests}" || return 0
     labels=$(IFS='|' && echo "$*")
     check_tests "$preset" -L "^($labels)$" -LE "^(timing|slow|long|night)$"
@@ -98,9 +98,10 @@ check_tests() { # PRESET CTEST_OPTION...
 }
 
 # What is left out: by day what takes longest, which says little more than the rest does. And at
-# night the builds that are not shipped compile each source by itself too.
-day='|night' unity=-DAXG_UNITY=ON
-[[ $night == no ]] || day='' unity=-DAXG_UNITY=OFF
+# night each source is compiled by itself; by day the tests of a folder at once, and a room at once
+# where the build is not shipped.
+day='|night' rooms=-DAXG_UNITY=ON tests=-DAXG_UNITY_TESTS=ON
+[[ $night == no ]] || day='' rooms=-DAXG_UNITY=OFF tests=-DAXG_UNITY_TESTS=OFF
 
 if [[ $all == no ]]; then
     "$root/setup.sh"
