@@ -165,12 +165,10 @@ def scripts_of_the_echo():
     one.permit(30, Script.instant(60) + 2, want="refused", why="live")
 
     one = script("a sample that is stamped ahead permits nothing yet", "a stamp is no clock")
-    one.begin().latch(4, at=Script.instant(4) + 600)
-    one.permit(4, Script.instant(4) + 300, want="refused", why="echo")
-    one.permit(4, Script.instant(4) + 580, live=5, want="refused", why="echo", twin_at=Script.
-               instant(4) + 599)
-    one.permit(4, Script.instant(4) + 590, live=6, twin_at=Script.instant(4) + 600)
-    one.may_move(Script.instant(4) + 700, Script.instant(4) + 600 + 10 * T)
+    at = Script.instant(4)
+    one.begin().latch(4, at=at + 600).permit(4, at + 300, want="refused", why="echo")
+    one.permit(4, at + 580, live=5, want="refused", why="echo", twin_at=at + 599)
+    one.permit(4, at + 590, live=6, twin_at=at + 600).may_move(at + 700, at + 600 + 10 * T)
 
     one = script("a stamp an hour ahead", "time goes on as it is told: the end passes, and latches")
     hour = 3_600_000_000
