@@ -12,6 +12,7 @@
 #include "core/certificate/joint_box_proof.hpp"
 #include "core/certificate/joint_path.hpp"
 #include "core/machine/machine.hpp"
+#include "core/machine/pose_product.hpp"
 
 namespace axg {
 
@@ -34,7 +35,7 @@ class BoxPoses {
     explicit BoxPoses(const Machine& machine) noexcept : machine_(&machine) {}
 
     /// Of this pair, at the centres of boxes that were cut from `grid` as this one was: along these
-    /// axes, one bit each. `task` must outlive what follows.
+    /// axes, one bit each.
     /// Cost: one product a joint of the path.
     void begin(const JointBoxTask& task, const JointBox& grid, const JointBox& box,
                std::uint32_t cut) noexcept;
@@ -43,10 +44,17 @@ class BoxPoses {
     /// them, one for each free joint and each stretch of fixed ones.
     [[nodiscard]] Pose at(const std::array<double, kAxesMax>& position) noexcept;
 
+    /// What `at` multiplies, and the axis of each of its joints.
+    [[nodiscard]] PoseProduct product() const noexcept {
+        return {joints_.data(), fixed_.data(), free_count_, right_.end};
+    }
+    [[nodiscard]] std::uint32_t axis(std::uint32_t joint) const noexcept {
+        return free_[joint].axis;
+    }
+
   private:
-    /// A joint whose axis is free, and where a position lies among its 2^bits places.
-    struct Free {
-        std::uint32_t joint;  // of the path
+    /// Where a free joint's position lies among its 2^bits places.
+    struct Places {
         std::uint32_t axis;
         std::uint32_t bits;
         double low, places_a_unit;
@@ -59,20 +67,16 @@ class BoxPoses {
         std::array<Pose, 64> product;
     };
 
-    [[nodiscard]] Pose motion(std::uint32_t joint, double position) noexcept;
-    void move_by(std::uint32_t joint, double position, Pose& pose) noexcept;
-    [[nodiscard]] Pose right_of(const std::array<double, kAxesMax>& position) noexcept;
-    [[nodiscard]] Pose left_of(const std::array<double, kAxesMax>& position) noexcept;
     template <class Product>
     [[nodiscard]] Pose remembered(Half& half, const std::array<double, kAxesMax>& position,
                                   const Product& product) noexcept;
 
     const Machine* machine_;
-    const JointBoxTask* task_ = nullptr;
     SineMemo sines_;
     std::uint32_t free_count_ = 0;
-    std::array<Free, kPathMax> free_{};
-    std::array<Pose, kPathMax + 1> fixed_{};  // right of free joint i, up to the one before it
+    std::array<Places, kPathMax> free_{};
+    std::array<PathJoint, kPathMax> joints_{};  // the free ones
+    std::array<Pose, kPathMax + 1> fixed_{};    // right of free joint i, up to the one before it
     Half right_{}, left_{};
 };
 

@@ -5,16 +5,9 @@
 
 #include <span>
 
-#include "core/base/sincos.hpp"
 #include "core/machine/machine.hpp"
 
 namespace axg {
-
-/// The motion of a linear joint along its direction, mm.
-[[nodiscard]] Pose linear_motion(const Joint& joint, double q_mm) noexcept;
-/// The turn of a rotary joint about the line through pivot_mm along direction, by the angle with
-/// these sines (Rodrigues' formula).
-[[nodiscard]] Pose rotary_motion(const Joint& joint, const SinCos& sines) noexcept;
 
 /// The motion of one joint at position q (mm or rad), in machine coordinates.
 /// Rotary: |q| <= kSinCosArgumentMax.
