@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 
 #include "core/base/fetch.hpp"
@@ -108,7 +109,7 @@ void BoxQueries::pose_grid(const JointBoxTask& task, std::span<BoxItem> items,
     if (queries.empty()) {
         return;
     }
-    poses_->begin(task, grid_of(task, first.grid), first.box, items.size() > 1 ? first.cut : 0);
+    poses_->begin(task, grid_of(task, first.grid), first.box, first.cut);
     for (std::size_t i = 0; i < items.size(); ++i) {
         // The motion in the box is a matter of what is left. Levers of whole surfaces are no
         // shorter.
@@ -120,6 +121,113 @@ void BoxQueries::pose_grid(const JointBoxTask& task, std::span<BoxItem> items,
                            .r_mm = task.margin_mm + motion.total_mm,
                            .pose_error_mm = task.pose_error_mm,
                            .pose = poses_->at(items[i].box.centre)};
+    }
+}
+
+/// What parts of boxes like this one have in common. False: there are none, or too many joints.
+bool BoxQueries::plan_tree(const JointBoxTask& task, const BoxItem& root, std::uint32_t depth,
+                           QueryTree& tree, TreePlan& plan) noexcept {
+    const JointBox& grid = grid_of(task, root.grid);
+    JointBox box = root.box;
+    std::uint32_t cut = root.cut;
+    for (std::uint32_t level = 0; level < depth; ++level) {
+        const std::uint32_t axis =
+            motion_by(*machine_, task.path, levers_[root.task], box.half).widest_axis;
+        if (axis == kNoIndex) {
+            return false;
+        }
+        plan.axes[level] = axis;
+        tree.quarter[level] = 0.5 * box.half[axis];
+        cut |= 1U << axis;
+        axg::halve(box, axis, false, grid);
+    }
+    const PathMotion motion = motion_by(*machine_, task.path, levers_[root.task], box.half);
+    plan.widest_axis = motion.widest_axis;
+    poses_->begin(task, grid, box, cut);
+    const PoseProduct product = poses_->product();
+    if (product.count > kTreeJointsMax) {
+        return false;
+    }
+    tree.kind = QueryKind::farther;
+    tree.is_float_only = are_float_only_;
+    tree.joints = product.count;
+    tree.split = product.split;
+    tree.r_mm = task.margin_mm + motion.total_mm;
+    tree.pose_error_mm = task.pose_error_mm;
+    tree.is_apart = task.pruned.is_apart;
+    std::copy_n(product.joints, product.count, tree.joint);
+    std::copy_n(product.fixed, product.count + 1, tree.fixed);
+    JointBox uncut = box;  // as far as the axes go that a part is not cut along
+    const Travel& travel = machine_->travel;
+    for (std::uint32_t i = 0; i < product.count; ++i) {
+        const std::uint32_t axis = poses_->axis(i);
+        const bool is_bounded = !machine_->axes[axis].unlimited;
+        constexpr double kInfinity = std::numeric_limits<double>::infinity();
+        TreeCut& to = tree.cut[i];
+        to = {box.half[axis], is_bounded ? travel.low[axis] : -kInfinity,
+              is_bounded ? travel.high[axis] : kInfinity};
+        for (std::uint32_t level = 0; level < depth; ++level) {
+            to.levels |= plan.axes[level] == axis ? 1U << level : 0;
+        }
+        uncut.centre[axis] = 0.5 * (travel.low[axis] + travel.high[axis]);
+        uncut.half[axis] = 0;
+    }
+    tree.may_be_pruned = is_pruned_for(*machine_, task, uncut);
+    return true;
+}
+
+std::optional<std::uint32_t> BoxQueries::plan_parts(std::span<const JointBoxTask> tasks,
+                                                    std::span<const BoxItem> roots,
+                                                    std::uint32_t depth, std::span<QueryTree> trees,
+                                                    std::span<TreePlan> plans,
+                                                    std::span<TreeRoot> out) noexcept {
+    std::uint32_t count = 0;
+    const BoxItem* before = nullptr;
+    for (std::size_t i = 0; i < roots.size(); ++i) {
+        const BoxItem& root = roots[i];
+        const JointBoxTask& task = tasks[root.task];
+        const bool is_alike =
+            before != nullptr && before->task == root.task && before->piece == root.piece &&
+            before->grid == root.grid && before->cut == root.cut &&
+            std::equal(root.box.half.begin(),
+                       root.box.half.begin() + static_cast<std::ptrdiff_t>(machine_->axes.size()),
+                       before->box.half.begin());
+        if (!is_alike) {
+            if (root.piece != kNoIndex || count == kQueryTreesMax ||
+                !plan_tree(task, root, depth, trees[count], plans[count])) {
+                return std::nullopt;
+            }
+            ++count;
+        }
+        before = &root;
+        TreeRoot& to = out[i];
+        to.mesh_a = task.mesh_a;
+        to.mesh_b = task.mesh_b;
+        to.pruned_a = task.pruned.mesh_a;
+        to.pruned_b = task.pruned.mesh_b;
+        to.tree = static_cast<std::uint16_t>(count - 1);
+        // The axes that were cut along are the same as the tree's of the root before.
+        const QueryTree& tree = trees[count - 1];
+        for (std::uint32_t k = 0; k < tree.joints; ++k) {
+            to.centre[k] = root.box.centre[poses_->axis(k)];
+        }
+    }
+    return count;
+}
+
+void BoxQueries::make_part(const JointBoxTask& task, const BoxItem& root, const TreePlan& plan,
+                           std::uint32_t depth, std::uint32_t part, BoxItem& out) const noexcept {
+    out.task = root.task;
+    out.widest_axis = plan.widest_axis;
+    out.piece = kNoIndex;
+    out.grid = root.grid;
+    out.cut = root.cut;
+    std::copy_n(root.box.centre.begin(), machine_->axes.size(), out.box.centre.begin());
+    std::copy_n(root.box.half.begin(), machine_->axes.size(), out.box.half.begin());
+    for (std::uint32_t level = 0; level < depth; ++level) {
+        const bool is_upper = (part >> (depth - 1 - level) & 1U) != 0;
+        axg::halve(out.box, plan.axes[level], is_upper, grid_of(task, root.grid));
+        out.cut |= 1U << plan.axes[level];
     }
 }
 

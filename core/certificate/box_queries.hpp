@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "core/base/arena.hpp"
@@ -13,6 +14,7 @@
 #include "core/certificate/joint_box_proof.hpp"
 #include "core/certificate/joint_path.hpp"
 #include "core/collision/engine.hpp"
+#include "core/collision/query_tree.hpp"
 #include "core/machine/machine.hpp"
 
 namespace axg {
@@ -45,12 +47,32 @@ class BoxQueries {
     void halve(const JointBoxTask& task, const BoxItem& item, bool is_upper,
                BoxItem& out) const noexcept;
 
+    /// How an engine poses the parts of boxes that were all cut alike, `depth` times more.
+    struct TreePlan {
+        std::uint32_t axes[kTreeDepthOfParts];  // that are cut along, level by level
+        std::uint32_t widest_axis;              // of a part (BoxItem)
+    };
+    /// False: the engine cannot, and nothing is planned.
+    /// @param roots  each task's together
+    /// @param trees, plans  [kQueryTreesMax] out
+    /// @param out    [roots] which tree and where; the group is the caller's to say
+    /// @return how many trees
+    [[nodiscard]] std::optional<std::uint32_t> plan_parts(
+        std::span<const JointBoxTask> tasks, std::span<const BoxItem> roots, std::uint32_t depth,
+        std::span<QueryTree> trees, std::span<TreePlan> plans, std::span<TreeRoot> out) noexcept;
+
+    /// One of those parts. Precondition: as planned.
+    void make_part(const JointBoxTask& task, const BoxItem& root, const TreePlan& plan,
+                   std::uint32_t depth, std::uint32_t part, BoxItem& out) const noexcept;
+
     /// Of a pair that was proven for the whole travel.
     [[nodiscard]] bool is_proven_already(const JointBoxTask& task,
                                          const JointBox& box) const noexcept;
 
   private:
     void find_levers(std::span<const JointBoxTask> tasks, std::span<const BoxItem> roots) noexcept;
+    [[nodiscard]] bool plan_tree(const JointBoxTask& task, const BoxItem& root, std::uint32_t depth,
+                                 QueryTree& tree, TreePlan& plan) noexcept;
     void pose_grid(const JointBoxTask& task, std::span<BoxItem> items,
                    std::span<Query> queries) noexcept;
 

@@ -53,7 +53,10 @@ std::optional<StagedProver> StagedProver::create(const Machine& machine, std::ui
                 Arena::size_bytes<std::uint32_t>(queries) + Arena::size_bytes<Query>(queries + 2) +
                 Arena::size_bytes<QueryResult>(queries + 2) +
                 Arena::size_bytes<GroupWork>(tasks + 1) + Arena::size_bytes<QueryStatus>(tasks) +
-                Arena::size_bytes<std::uint32_t>(tasks));
+                Arena::size_bytes<std::uint32_t>(tasks) +
+                Arena::size_bytes<QueryTree>(kQueryTreesMax) +
+                Arena::size_bytes<BoxQueries::TreePlan>(kQueryTreesMax) +
+                Arena::size_bytes<TreeRoot>(queries));
     if (!arena.ok()) {
         return std::nullopt;
     }
@@ -69,6 +72,9 @@ std::optional<StagedProver> StagedProver::create(const Machine& machine, std::ui
     prover.groups_ = prover.arena_.take<GroupWork>(tasks + 1);
     prover.full_ = prover.arena_.take<QueryStatus>(tasks);
     prover.group_of_ = prover.arena_.take<std::uint32_t>(tasks);
+    prover.trees_ = prover.arena_.take<QueryTree>(kQueryTreesMax);
+    prover.tree_plans_ = prover.arena_.take<BoxQueries::TreePlan>(kQueryTreesMax);
+    prover.roots_ = prover.arena_.take<TreeRoot>(queries);
     prover.arena_.seal();
     return prover;
 }
@@ -117,36 +123,48 @@ void StagedProver::ask(std::span<const JointBoxTask> tasks, std::uint32_t first,
     }
 }
 
-/// What was asked. False: the engine is lost, and nothing that it said in this cycle counts.
-bool StagedProver::run(const Engine& engine, StagedWork& work) noexcept {
-    const bool has_known_answer = known_answer_mesh_ != kNoIndex;
-    const std::uint32_t all = query_count_ + (has_known_answer ? 2U : 0U);
-    for (std::uint32_t i = query_count_; i < all; ++i) {
-        queries_[i] = known_answer_query(known_answer_mesh_, i != query_count_);
-        queries_[i].group = static_cast<std::uint16_t>(group_count_);
-        queries_[i].is_float_only = boxes_->are_float_only();
+/// The known-answer test's queries, of a group of their own.
+std::span<Query> StagedProver::add_known_answer() noexcept {
+    const std::uint32_t count = known_answer_mesh_ != kNoIndex ? 2 : 0;
+    const std::span<Query> queries = queries_.subspan(query_count_, count);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        queries[i] = known_answer_query(known_answer_mesh_, i != 0);
+        queries[i].group = static_cast<std::uint16_t>(group_count_);
+        queries[i].is_float_only = boxes_->are_float_only();
     }
     groups_[group_count_] = {.share = kKnownAnswerShare};
+    return queries;
+}
+
+void StagedProver::note(QueryStatus status) noexcept {
+    const bool is_lost = status == QueryStatus::not_run || status == QueryStatus::bad_rounding;
+    lost_ = is_lost && lost_ == QueryStatus::ok ? status : lost_;
+}
+
+/// The known-answer test's results, behind those of `count` queries.
+void StagedProver::judge_known_answer(const Engine& engine, std::uint32_t count,
+                                      StagedWork& work) noexcept {
+    if (known_answer_mesh_ == kNoIndex) {
+        return;
+    }
+    const QueryResult &far = results_[count], &near = results_[count + 1];
+    // Of lists that all queries of a call share, as an engine without groups has them.
+    const bool is_full = engine.run_groups == nullptr && is_batch_lost(far, near);
+    if (is_full) {
+        std::fill_n(results_.begin(), count, far);
+    }
+    const std::uint16_t seen = is_full ? kKnownAnswerSignature : known_answer_signature(far, near);
+    work.known_answer_signature = work.calls == 0 || work.known_answer_signature == seen ? seen : 0;
+    note(far.status);
+    note(near.status);
+}
+
+/// What was asked. False: the engine is lost, and nothing that it said in this cycle counts.
+bool StagedProver::run(const Engine& engine, StagedWork& work) noexcept {
+    const auto all = static_cast<std::uint32_t>(query_count_ + add_known_answer().size());
     std::fill_n(results_.begin(), all, QueryResult{});  // an engine that is silent proves nothing
     engine(queries_.first(all), results_.first(all), groups_.first(group_count_ + 1));
-    const auto note = [this](QueryStatus status) {
-        const bool is_lost = status == QueryStatus::not_run || status == QueryStatus::bad_rounding;
-        lost_ = is_lost && lost_ == QueryStatus::ok ? status : lost_;
-    };
-    if (has_known_answer) {
-        const QueryResult &far = results_[query_count_], &near = results_[query_count_ + 1];
-        // Of lists that all queries of a call share, as an engine without groups has them.
-        const bool is_full = engine.run_groups == nullptr && is_batch_lost(far, near);
-        if (is_full) {
-            std::fill_n(results_.begin(), query_count_, far);
-        }
-        const std::uint16_t seen =
-            is_full ? kKnownAnswerSignature : known_answer_signature(far, near);
-        work.known_answer_signature =
-            work.calls == 0 || work.known_answer_signature == seen ? seen : 0;
-        note(far.status);
-        note(near.status);
-    }
+    judge_known_answer(engine, query_count_, work);
     for (std::uint32_t i = 0; i < query_count_; ++i) {
         const QueryResult& result = results_[i];
         Node& node = nodes_[asked_[i]];
@@ -161,10 +179,74 @@ bool StagedProver::run(const Engine& engine, StagedWork& work) noexcept {
     return lost_ == QueryStatus::ok;
 }
 
+/// The leaves of trees of this depth below the nodes that there are, if the engine poses them
+/// itself. False: it does not, and nothing was asked.
+bool StagedProver::plan_parts(const Engine& engine, std::span<const JointBoxTask> tasks,
+                              std::uint32_t depth) noexcept {
+    const std::uint32_t roots = node_count_;
+    if (engine.run_parts == nullptr || !boxes_->are_float_only() ||
+        plan_.form != TreeForm::leaves || depth > kTreeDepthOfParts ||
+        (roots << depth) + 2 > engine.parts_max) {
+        return false;
+    }
+    const std::optional<std::uint32_t> trees =
+        boxes_->plan_parts(tasks, items_.first(roots), depth, trees_, tree_plans_, roots_);
+    if (!trees) {
+        return false;
+    }
+    for (std::uint32_t i = 0; i < roots; ++i) {
+        roots_[i].group = static_cast<std::uint16_t>(group_of_[items_[i].task]);
+    }
+    parts_ = {trees_.first(*trees), roots_.first(roots), depth};
+    return true;
+}
+
+/// Asks what was planned; parts that are not far become nodes. As `run`.
+bool StagedProver::run_parts(const Engine& engine, std::span<const JointBoxTask> tasks,
+                             std::span<JointBoxResult> results, bool is_last,
+                             StagedWork& work) noexcept {
+    const auto count = static_cast<std::uint32_t>(parts_.count());
+    const std::span<const Query> known_answer = add_known_answer();
+    const std::span<QueryResult> said = results_.first(count + known_answer.size());
+    std::fill(said.begin(), said.end(), QueryResult{});
+    engine.run_parts(engine.self, parts_, known_answer, said, groups_.first(group_count_ + 1));
+    judge_known_answer(engine, count, work);
+    std::uint32_t last = kNoIndex;  // a node of the task at hand, that stays open for good
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const QueryResult& result = results_[i];
+        const std::uint32_t root = i >> parts_.depth;
+        const TreeRoot& from = parts_.roots[root];
+        note(result.status);
+        nodes_[root].is_leaf = false;
+        if (result.proof == Proof::far && result.status == QueryStatus::ok &&
+            first_full(groups_[from.group]) == QueryStatus::ok) {
+            ++results[items_[root].task].queries;
+            continue;
+        }
+        const bool may_be_split = may_help_to_split(result.status, parts_.trees[from.tree].r_mm);
+        if (is_last && may_be_split && last != kNoIndex && items_[last].task == items_[root].task) {
+            ++results[items_[root].task].queries;
+            nodes_[last].status = result.status;  // one that is open says it for all
+            continue;
+        }
+        boxes_->make_part(tasks[items_[root].task], items_[root], tree_plans_[from.tree],
+                          parts_.depth, i & ((1U << parts_.depth) - 1), items_[node_count_]);
+        last = may_be_split ? node_count_ : last;
+        nodes_[node_count_++] = {root, result.status, true, false, may_be_split};
+    }
+    ++work.calls;
+    work.queries += count;
+    return lost_ == QueryStatus::ok;
+}
+
 /// Trees of this depth below the nodes that there are.
 bool StagedProver::run_stage(const Engine& engine, std::span<const JointBoxTask> tasks,
-                             std::uint32_t depth, bool is_last, StagedWork& work) noexcept {
+                             std::span<JointBoxResult> results, std::uint32_t depth, bool is_last,
+                             StagedWork& work) noexcept {
     const bool is_lazy = !engine.prefers_batches;
+    if (!is_lazy && plan_parts(engine, tasks, depth)) {
+        return run_parts(engine, tasks, results, is_last, work);
+    }
     std::uint32_t begin = 0;
     for (std::uint32_t level = 1; level <= depth; ++level) {
         const std::uint32_t first = node_count_;
@@ -331,8 +413,9 @@ StagedWork StagedProver::prove(const Engine& engine, std::span<const JointBoxTas
         std::fill_n(nodes_.begin(), open, Node{kNoIndex, QueryStatus::not_run, true, false, true});
         node_count_ = open;
         ++work.stages;
-        if (!(is_first ? run_first(engine, tasks, own, work)
-                       : run_stage(engine, tasks, depth, stage + 1 == plan_.stages, work))) {
+        if (!(is_first
+                  ? run_first(engine, tasks, own, work)
+                  : run_stage(engine, tasks, results, depth, stage + 1 == plan_.stages, work))) {
             for (JointBoxResult& result : results.first(tasks.size())) {
                 if (result.proof != JointBoxProof::bad_box) {
                     result.proof = JointBoxProof::engine_failed;

@@ -11,6 +11,7 @@
 #include <span>
 
 #include "core/base/arena.hpp"
+#include "core/certificate/box_queries.hpp"
 #include "core/certificate/joint_box_proof.hpp"
 #include "core/collision/engine.hpp"
 #include "core/machine/cycle_work.hpp"
@@ -64,9 +65,18 @@ class StagedProver {
                     bool is_lazy) noexcept;
     void ask(std::span<const JointBoxTask> tasks, std::uint32_t first,
              std::uint32_t count) noexcept;
+    [[nodiscard]] std::span<Query> add_known_answer() noexcept;
+    void judge_known_answer(const Engine& engine, std::uint32_t count, StagedWork& work) noexcept;
+    void note(QueryStatus status) noexcept;
     [[nodiscard]] bool run(const Engine& engine, StagedWork& work) noexcept;
+    [[nodiscard]] bool plan_parts(const Engine& engine, std::span<const JointBoxTask> tasks,
+                                  std::uint32_t depth) noexcept;
+    [[nodiscard]] bool run_parts(const Engine& engine, std::span<const JointBoxTask> tasks,
+                                 std::span<JointBoxResult> results, bool is_last,
+                                 StagedWork& work) noexcept;
     [[nodiscard]] bool run_stage(const Engine& engine, std::span<const JointBoxTask> tasks,
-                                 std::uint32_t depth, bool is_last, StagedWork& work) noexcept;
+                                 std::span<JointBoxResult> results, std::uint32_t depth,
+                                 bool is_last, StagedWork& work) noexcept;
     [[nodiscard]] bool run_first(const Engine& engine, std::span<const JointBoxTask> tasks,
                                  std::uint32_t own, StagedWork& work) noexcept;
     [[nodiscard]] std::uint32_t take_wider(std::span<JointBoxResult> results, std::uint32_t own,
@@ -77,15 +87,19 @@ class StagedProver {
     CyclePlan plan_;
     std::uint32_t known_answer_mesh_;
     Arena arena_;
-    BoxQueries* boxes_ = nullptr;         // in the arena
-    std::span<BoxItem> items_;            // a stage's trees, level by level
-    std::span<Node> nodes_;               // likewise
-    std::span<std::uint32_t> asked_;      // which node a query is about
-    std::span<Query> queries_;            // and two of the known-answer test
-    std::span<QueryResult> results_;      // likewise
-    std::span<GroupWork> groups_;         // [tasks] and the known-answer test's
-    std::span<QueryStatus> full_;         // [tasks] of each group, when a stage is judged
-    std::span<std::uint32_t> group_of_;   // [tasks]
+    BoxQueries* boxes_ = nullptr;        // in the arena
+    std::span<BoxItem> items_;           // a stage's trees, level by level
+    std::span<Node> nodes_;              // likewise
+    std::span<std::uint32_t> asked_;     // which node a query is about
+    std::span<Query> queries_;           // and two of the known-answer test
+    std::span<QueryResult> results_;     // likewise
+    std::span<GroupWork> groups_;        // [tasks] and the known-answer test's
+    std::span<QueryStatus> full_;        // [tasks] of each group, when a stage is judged
+    std::span<std::uint32_t> group_of_;  // [tasks]
+    std::span<QueryTree> trees_;         // [kQueryTreesMax] of a stage that an engine poses
+    std::span<BoxQueries::TreePlan> tree_plans_;  // likewise
+    std::span<TreeRoot> roots_;                   // [queries] likewise
+    PartQueries parts_;
     QueryStatus lost_ = QueryStatus::ok;  // what an engine that is lost said in this cycle
     std::uint32_t node_count_ = 0, query_count_ = 0, group_count_ = 0;
 };

@@ -106,6 +106,8 @@ struct QueryResult {
            status == QueryStatus::too_many_rechecks;
 }
 
+struct PartQueries;  // core/collision/query_tree.hpp
+
 /// An engine as the cycle sees it. `run` takes every query; results[i] belongs to
 /// queries[i]. Precondition: as many results as queries. Cost: bounded by the capacities the
 /// engine was made with.
@@ -120,6 +122,13 @@ struct Engine {
     // groups, and its own capacities hold.
     void (*run_groups)(void* self, std::span<const Query> queries, std::span<QueryResult> results,
                        std::span<GroupWork> groups) noexcept = nullptr;
+
+    // The same for parts of boxes in float alone, which the engine poses itself, and queries behind
+    // them: as many results as both. Null: it poses none.
+    void (*run_parts)(void* self, const PartQueries& parts, std::span<const Query> queries,
+                      std::span<QueryResult> results,
+                      std::span<GroupWork> groups) noexcept = nullptr;
+    std::uint32_t parts_max = 0;  // of a call, queries behind them included
 
     void operator()(std::span<const Query> queries, std::span<QueryResult> results) const noexcept {
         run(self, queries, results);

@@ -27,6 +27,13 @@ void CudaEngine::run(std::span<const Query>, std::span<QueryResult>,
                      std::span<GroupWork>) noexcept {
     AXG_ASSERT(false);
 }
+void CudaEngine::run(const PartQueries&, std::span<const Query>, std::span<QueryResult>,
+                     std::span<GroupWork>) noexcept {
+    AXG_ASSERT(false);
+}
+std::uint32_t CudaEngine::parts_max() const noexcept {
+    return 0;
+}
 Engine CudaEngine::engine() noexcept {
     AXG_ASSERT(false);
     return {};

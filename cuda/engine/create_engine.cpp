@@ -79,12 +79,16 @@ void place_pinned(CudaEngine::Parts& parts, MemoryBlock& host, MemoryBlock& devi
     const DeviceLimits& limits = parts.buffers.limits;
     parts.head = host.take<BatchHead>(1);
     parts.queries = host.take<Query>(limits.queries);
+    parts.query_trees = host.take<QueryTree>(kQueryTreesMax);
+    parts.roots = host.take<TreeRoot>(limits.queries);
     parts.results = host.take<DeviceResult>(limits.queries);
     parts.listed = host.take<TriangleIds>(std::size_t{limits.queries} * limits.listed);
     parts.groups_in = host.take<GroupSums>(limits.queries);
     parts.groups_out = host.take<DeviceGroupResult>(limits.queries);
     parts.buffers.head = device.take<BatchHead>(1);
     parts.buffers.queries = device.take<Query>(limits.queries);
+    parts.buffers.query_trees = device.take<QueryTree>(kQueryTreesMax);
+    parts.buffers.roots = device.take<TreeRoot>(limits.queries);
     parts.buffers.results = device.take<DeviceResult>(limits.queries);
     parts.buffers.listed = device.take<TriangleIds>(std::size_t{limits.queries} * limits.listed);
     parts.buffers.groups_in = device.take<GroupSums>(limits.queries);
@@ -205,7 +209,8 @@ bool sum_trees(CudaEngine::Parts& parts, const Trees& trees, std::string& fault)
 
 cudaError_t launch_batch(const DeviceBuffers& b, const Launch& launch, LaunchLeaves leaves) {
     const bool measures = b.limits.measures;
-    cudaError_t error = launch_prepare_queries(b, launch);
+    cudaError_t error =
+        b.limits.poses_parts ? launch_prepare_parts(b, launch) : launch_prepare_queries(b, launch);
     const auto next = [&error](cudaError_t status) {
         error = error != cudaSuccess ? error : status;
     };
@@ -266,6 +271,9 @@ void warm_up(CudaEngine& engine) {
     engine.run({&query, 1}, {&result, 1}, {&group, 1});
     query.is_float_only = true;
     engine.run({&query, 1}, {&result, 1}, {&group, 1});
+    const QueryTree tree{};
+    const TreeRoot root;
+    engine.run(PartQueries{{&tree, 1}, {&root, 1}}, {}, {&result, 1}, {&group, 1});
     query.is_float_only = false;
     query.kind = QueryKind::clearance;
     engine.run({&query, 1}, {&result, 1});
@@ -309,6 +317,8 @@ std::optional<CudaEngine> CudaEngine::Parts::engine_over(const TreeBodies& bodie
     parts->stage_limits = stage_limits_of(parts->buffers.limits, parts->clearance_limits);
     parts->float_stage_limits = parts->stage_limits;
     parts->float_stage_limits.has_rechecks = false;
+    parts->part_limits = parts->float_stage_limits;
+    parts->part_limits.poses_parts = true;
     parts->groups_here.reserve(parts->buffers.limits.queries);
     parts->place_of_group.assign(kGroupsMax, kNoGroup);
     if (!reserve(*parts, trees, fault) || !sum_trees(*parts, trees, fault) ||
@@ -318,7 +328,8 @@ std::optional<CudaEngine> CudaEngine::Parts::engine_over(const TreeBodies& bodie
         !record(*parts, parts->clearance_limits, options.launch_leaves, parts->clearances, fault) ||
         !record(*parts, parts->stage_limits, options.launch_leaves, parts->stages, fault) ||
         !record(*parts, parts->float_stage_limits, options.launch_leaves, parts->float_stages,
-                fault)) {
+                fault) ||
+        !record(*parts, parts->part_limits, options.launch_leaves, parts->part_stages, fault)) {
         return std::nullopt;
     }
     // The first launch of a kernel loads it: every kernel runs once before the first cycle.

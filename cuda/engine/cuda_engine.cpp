@@ -77,16 +77,22 @@ bool wait_for(From& from, std::uint32_t sequence, Clock::time_point deadline, To
 /// The groups of a launch's queries get places of their own, in the order they are met.
 void place_groups(CudaEngine::Parts& parts, std::size_t count,
                   std::span<const GroupWork> groups) noexcept {
-    parts.groups_here.clear();
-    for (Query& query : std::span(parts.queries, count)) {
-        AXG_ASSERT(query.group < groups.size());
-        std::uint16_t& place = parts.place_of_group[query.group];
+    const auto place_of = [&parts, groups](std::uint16_t group) {
+        AXG_ASSERT(group < groups.size());
+        std::uint16_t& place = parts.place_of_group[group];
         if (place == kNoGroup) {
             place = static_cast<std::uint16_t>(parts.groups_here.size());
-            parts.groups_in[place] = sums_of(groups[query.group], parts.sequence);
-            parts.groups_here.push_back(query.group);
+            parts.groups_in[place] = sums_of(groups[group], parts.sequence);
+            parts.groups_here.push_back(group);
         }
-        query.group = place;
+        return place;
+    };
+    for (std::size_t i = 0;
+         parts.head->parts != 0 && i <= (parts.head->parts - 1) >> parts.head->depth; ++i) {
+        parts.roots[i].group = place_of(parts.roots[i].group);
+    }
+    for (Query& query : std::span(parts.queries, count)) {
+        query.group = place_of(query.group);
     }
     for (const std::uint16_t group : parts.groups_here) {
         parts.place_of_group[group] = kNoGroup;
@@ -102,39 +108,59 @@ void fill_list(const TriangleIds* from, std::uint32_t room, const Query& query,
     std::sort(query.list.begin(), query.list.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
-/// One launch, in groups unless there are none. False: the engine is dead, and no result of it
-/// counts.
-bool run_batch(CudaEngine::Parts& parts, std::span<const Query> queries,
-               std::span<QueryResult> results, std::span<GroupWork> groups) noexcept {
-    const Clock::time_point deadline = Clock::now() + std::chrono::microseconds(parts.deadline_us);
-    const DeviceLimits& limits = parts.buffers.limits;
-    const std::uint32_t sequence = ++parts.sequence;
-    const bool is_stage = !groups.empty();
+/// What a launch is about: parts of boxes, and queries behind them.
+struct Asked {
+    const PartQueries& parts;
+    std::span<const Query> queries;
+};
+
+/// Into pinned memory, and the number of the batch last. Returns its graph.
+const BatchGraph& place_batch(CudaEngine::Parts& parts, const Asked& asked,
+                              std::span<const GroupWork> groups) noexcept {
+    const auto part_count = static_cast<std::uint32_t>(asked.parts.count());
+    const auto query_count = static_cast<std::uint32_t>(asked.queries.size());
     bool measures = false, has_rechecks = false;
-    for (std::size_t i = 0; i < queries.size(); ++i) {
-        const Query& query = parts.queries[i] = queries[i];
+    for (std::size_t i = 0; i < asked.queries.size(); ++i) {
+        const Query& query = parts.queries[i] = asked.queries[i];
         measures = measures || query.kind == QueryKind::clearance;
         has_rechecks = has_rechecks || !query.is_float_only || query.kind != QueryKind::farther;
     }
+    std::copy(asked.parts.trees.begin(), asked.parts.trees.end(), parts.query_trees);
+    std::copy(asked.parts.roots.begin(), asked.parts.roots.end(), parts.roots);
     parts.groups_here.clear();
-    if (is_stage) {
-        place_groups(parts, queries.size(), groups);
+    *parts.head = {.sequence = ++parts.sequence,
+                   .count = part_count + query_count,
+                   .parts = part_count,
+                   .depth = asked.parts.depth};
+    if (!groups.empty()) {
+        place_groups(parts, query_count, groups);
     }
-    *parts.head = {sequence, static_cast<std::uint32_t>(queries.size()),
-                   static_cast<std::uint32_t>(parts.groups_here.size())};
-    std::memset(static_cast<void*>(parts.results), kPoison, queries.size() * sizeof(DeviceResult));
+    parts.head->groups = static_cast<std::uint32_t>(parts.groups_here.size());
+    std::memset(static_cast<void*>(parts.results), kPoison,
+                (part_count + query_count) * sizeof(DeviceResult));
     std::memset(static_cast<void*>(parts.groups_out), kPoison,
                 parts.groups_here.size() * sizeof(DeviceGroupResult));
     std::atomic_thread_fence(std::memory_order_seq_cst);
-    const BatchGraph& batch = is_stage && !has_rechecks ? parts.float_stages
-                              : is_stage                ? parts.stages
-                              : measures                ? parts.clearances
-                                                        : parts.proofs;
+    return part_count != 0                    ? parts.part_stages
+           : !groups.empty() && !has_rechecks ? parts.float_stages
+           : !groups.empty()                  ? parts.stages
+           : measures                         ? parts.clearances
+                                              : parts.proofs;
+}
+
+/// One launch, in groups unless there are none. False: the engine is dead, and no result of it
+/// counts.
+bool run_batch(CudaEngine::Parts& parts, const Asked& asked, std::span<QueryResult> results,
+               std::span<GroupWork> groups) noexcept {
+    const Clock::time_point deadline = Clock::now() + std::chrono::microseconds(parts.deadline_us);
+    const BatchGraph& batch = place_batch(parts, asked, groups);
+    const std::uint32_t sequence = parts.sequence, room = parts.buffers.limits.listed;
     if (cudaGraphLaunch(batch.exec, parts.partition.stream) != cudaSuccess) {
         parts.give_up("the GPU refused a batch");
         return false;
     }
-    for (std::size_t i = 0; i < queries.size(); ++i) {
+    const std::size_t first = results.size() - asked.queries.size();
+    for (std::size_t i = 0; i < results.size(); ++i) {
         if (!wait_for(parts.results[i], sequence, deadline, results[i])) {
             parts.give_up("an answer of the GPU did not come whole in time");
             return false;
@@ -143,7 +169,9 @@ bool run_batch(CudaEngine::Parts& parts, std::span<const Query> queries,
             parts.give_up("a kernel of the batch did not do its work");
             return false;
         }
-        fill_list(parts.listed + i * limits.listed, limits.listed, queries[i], results[i]);
+        if (i >= first) {
+            fill_list(parts.listed + i * room, room, asked.queries[i - first], results[i]);
+        }
     }
     for (std::size_t i = 0; i < parts.groups_here.size(); ++i) {
         if (!wait_for(parts.groups_out[i], sequence, deadline, groups[parts.groups_here[i]])) {
@@ -152,6 +180,22 @@ bool run_batch(CudaEngine::Parts& parts, std::span<const Query> queries,
         }
     }
     return true;
+}
+
+/// Nothing is known yet. False: nothing will be, for the poses come from this thread.
+bool begin(std::span<QueryResult> results) noexcept {
+    const bool is_exact = rounds_to_nearest();
+    std::fill(results.begin(), results.end(),
+              QueryResult{.status = is_exact ? QueryStatus::not_run : QueryStatus::bad_rounding});
+    return is_exact;
+}
+
+/// A share is spent by all of a group together, in all launches.
+void refuse(QueryResult& result, const GroupWork& group) noexcept {
+    const QueryStatus full = first_full(group);
+    if (full != QueryStatus::ok) {
+        result = QueryResult{.status = full};
+    }
 }
 
 }  // namespace
@@ -167,8 +211,8 @@ CudaEngine::~CudaEngine() {
     // What a kernel still writes behind its last result must be there: freeing waits for the
     // device, not for a partition of it.
     static_cast<void>(cudaStreamSynchronize(parts_->partition.stream));
-    for (const cuda::BatchGraph& batch :
-         {parts_->proofs, parts_->clearances, parts_->stages, parts_->float_stages}) {
+    for (const cuda::BatchGraph& batch : {parts_->proofs, parts_->clearances, parts_->stages,
+                                          parts_->float_stages, parts_->part_stages}) {
         static_cast<void>(cudaGraphExecDestroy(batch.exec));
         static_cast<void>(cudaGraphDestroy(batch.graph));
     }
@@ -184,26 +228,44 @@ void CudaEngine::run(std::span<const Query> queries, std::span<QueryResult> resu
 void CudaEngine::run(std::span<const Query> queries, std::span<QueryResult> results,
                      std::span<GroupWork> groups) noexcept {
     AXG_ASSERT(queries.size() == results.size() && groups.size() <= kGroupsMax);
-    std::fill(results.begin(), results.end(), QueryResult{});
-    if (!rounds_to_nearest()) {  // the poses come from this thread
-        std::fill(results.begin(), results.end(), QueryResult{.status = QueryStatus::bad_rounding});
+    if (!begin(results)) {
         return;
     }
     const std::size_t room = parts_->buffers.limits.queries;
     for (std::size_t at = 0; at < queries.size() && parts_->fault == nullptr; at += room) {
         const std::size_t count = std::min(room, queries.size() - at);
-        if (!run_batch(*parts_, queries.subspan(at, count), results.subspan(at, count), groups)) {
+        if (!run_batch(*parts_, {{}, queries.subspan(at, count)}, results.subspan(at, count),
+                       groups)) {
             std::fill(results.begin(), results.end(), QueryResult{});
         }
     }
-    // A share is spent by all of a group together, in all launches.
     for (std::size_t i = 0; !groups.empty() && parts_->fault == nullptr && i < results.size();
          ++i) {
-        const QueryStatus full = first_full(groups[queries[i].group]);
-        if (full != QueryStatus::ok) {
-            results[i] = QueryResult{.status = full};
-        }
+        refuse(results[i], groups[queries[i].group]);
     }
+}
+
+void CudaEngine::run(const PartQueries& parts, std::span<const Query> queries,
+                     std::span<QueryResult> results, std::span<GroupWork> groups) noexcept {
+    const std::size_t count = parts.count();
+    AXG_ASSERT(count + queries.size() == results.size() && results.size() <= parts_max() &&
+               parts.trees.size() <= kQueryTreesMax && parts.depth <= kTreeDepthOfParts &&
+               groups.size() <= kGroupsMax);
+    if (!begin(results) || parts_->fault != nullptr) {
+        return;
+    }
+    if (!run_batch(*parts_, {parts, queries}, results, groups)) {
+        std::fill(results.begin(), results.end(), QueryResult{});
+        return;
+    }
+    for (std::size_t i = 0; i < results.size(); ++i) {
+        refuse(results[i],
+               groups[i < count ? parts.roots[i >> parts.depth].group : queries[i - count].group]);
+    }
+}
+
+std::uint32_t CudaEngine::parts_max() const noexcept {
+    return parts_->buffers.limits.queries;
 }
 
 Engine CudaEngine::engine() noexcept {
@@ -217,6 +279,11 @@ Engine CudaEngine::engine() noexcept {
                         std::span<GroupWork> groups) noexcept {
         static_cast<CudaEngine*>(self)->run(queries, results, groups);
     };
+    out.run_parts = [](void* self, const PartQueries& parts, std::span<const Query> queries,
+                       std::span<QueryResult> results, std::span<GroupWork> groups) noexcept {
+        static_cast<CudaEngine*>(self)->run(parts, queries, results, groups);
+    };
+    out.parts_max = parts_max();
     out.prefers_batches = true;
     return out;
 }

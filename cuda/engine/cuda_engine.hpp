@@ -15,6 +15,7 @@
 #include <string>
 
 #include "core/collision/engine.hpp"
+#include "core/collision/query_tree.hpp"
 #include "core/machine/machine.hpp"
 #include "core/mesh/mesh.hpp"
 
@@ -80,6 +81,10 @@ class CudaEngine {
     /// As `Engine::run_groups`: what shares allow, and no capacity.
     void run(std::span<const Query> queries, std::span<QueryResult> results,
              std::span<GroupWork> groups) noexcept;
+    /// As `Engine::run_parts`. Precondition: all of them in float alone, at most `parts_max`.
+    void run(const PartQueries& parts, std::span<const Query> queries,
+             std::span<QueryResult> results, std::span<GroupWork> groups) noexcept;
+    [[nodiscard]] std::uint32_t parts_max() const noexcept;
     /// As the guard sees it: a stage is a call.
     [[nodiscard]] Engine engine() noexcept;
 

@@ -9,6 +9,7 @@
 #include "core/base/limits.hpp"
 #include "core/collision/engine.hpp"
 #include "core/collision/group_work.hpp"
+#include "core/collision/query_tree.hpp"
 #include "core/collision/tree.hpp"
 
 namespace axg::cuda {
@@ -106,7 +107,8 @@ inline constexpr std::uint32_t kBatchQueriesMax = 544;
 /// Pinned, written by the host before a batch.
 struct BatchHead {
     std::uint32_t sequence = 0, count = 0;
-    std::uint32_t groups = 0;  // of a stage
+    std::uint32_t groups = 0;            // of a stage
+    std::uint32_t parts = 0, depth = 0;  // the first so many are parts of boxes (PartQueries)
 };
 
 /// One result as the device writes it.
@@ -168,6 +170,7 @@ struct DeviceLimits {
     std::uint32_t batch_triangle_pairs = 0, batch_rechecks = 0;
     bool measures = false;          // a batch with a clearance query
     bool is_stage = false;          // queries in groups: what each may use, and nothing else
+    bool poses_parts = false;       // a stage in float that begins with parts of boxes
     bool has_rechecks = true;       // else no query is tested in double
     std::uint32_t listed = 0;       // a query: touching pairs told by name
     std::uint32_t tree_levels = 0;  // of pairs of nodes to open
@@ -182,6 +185,8 @@ struct DeviceBuffers {
     // Pinned memory, as the device sees it.
     const BatchHead* head = nullptr;
     const Query* queries = nullptr;
+    const QueryTree* query_trees = nullptr;  // [kQueryTreesMax]
+    const TreeRoot* roots = nullptr;         // [queries]
     DeviceResult* results = nullptr;
     TriangleIds* listed = nullptr;            // [queries][listed], touching pairs
     const GroupSums* groups_in = nullptr;     // [queries]

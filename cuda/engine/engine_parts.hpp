@@ -56,17 +56,21 @@ struct CudaEngine::Parts {
     std::byte* pinned_memory = nullptr;
     cuda::DeviceBuffers buffers;          // addresses as the device sees them
     cuda::DeviceLimits clearance_limits;  // of a batch with a clearance query
-    // Of one whose queries are in groups, and where none of them is ever tested in double.
-    cuda::DeviceLimits stage_limits, float_stage_limits;
+    // Of one whose queries are in groups, where none of them is ever tested in double, and where
+    // they begin with parts of boxes besides.
+    cuda::DeviceLimits stage_limits, float_stage_limits, part_limits;
     // The same pinned memory as the host sees it.
     cuda::BatchHead* head = nullptr;
     Query* queries = nullptr;
+    QueryTree* query_trees = nullptr;
+    TreeRoot* roots = nullptr;
     cuda::DeviceResult* results = nullptr;
     TriangleIds* listed = nullptr;
     GroupSums* groups_in = nullptr;
     cuda::DeviceGroupResult* groups_out = nullptr;
-    // Without and with the kernels that clearance needs; in groups, with and without rechecks.
-    cuda::BatchGraph proofs, clearances, stages, float_stages;
+    // Without and with the kernels that clearance needs; in groups, with and without rechecks, and
+    // of parts of boxes.
+    cuda::BatchGraph proofs, clearances, stages, float_stages, part_stages;
     std::uint32_t sequence = 0;  // of the last batch
     // Groups of a launch: which of the call's, and which of the launch's each of those is.
     std::vector<std::uint16_t> groups_here, place_of_group;

@@ -34,6 +34,8 @@ enum class AxisData : std::uint8_t { computed, cached, prefetched };
 
 /// Zeroes the counters, reads the queries, works out their constants, lists the two roots.
 cudaError_t launch_prepare_queries(const DeviceBuffers& buffers, const Launch& launch) noexcept;
+/// The same where parts of boxes come first, which it poses.
+cudaError_t launch_prepare_parts(const DeviceBuffers& buffers, const Launch& launch) noexcept;
 /// Clearance: an upper bound of each distance, by going down to the nearest pair of leaves.
 cudaError_t launch_seed_upper_bounds(const DeviceBuffers& buffers, const Launch& launch) noexcept;
 /// Opens every pair of nodes of one tree level.

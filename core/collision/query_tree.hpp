@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// Queries about the parts of boxes that were all cut alike, as few numbers: where a part's centre
+// lies follows from its place among them, and its pose from that. An engine on a GPU poses them
+// itself; the lines are the same on both sides, so the queries are, bit by bit.
+// Source: docs/theory/certificate.md, "Parts posed by the engine".
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "core/base/host_device.hpp"
+#include "core/collision/engine.hpp"
+#include "core/machine/pose_product.hpp"
+
+namespace axg {
+
+inline constexpr std::uint32_t kTreeJointsMax = 6;  // of one box
+inline constexpr std::uint32_t kTreeDepthOfParts = 10;
+inline constexpr std::uint32_t kQueryTreesMax = 64;  // in a call
+
+/// How boxes were cut along the axis of a joint.
+struct TreeCut {
+    double half = 0;           // of every part, mm or rad
+    double low = 0, high = 0;  // of the travel that pruned surfaces are for
+    std::uint32_t levels = 0;  // one bit each
+    std::uint32_t unused = 0;
+};
+
+/// What all parts of a task have in common.
+struct alignas(16) QueryTree {
+    QueryKind kind = QueryKind::farther;
+    bool is_float_only = false;
+    // The margin and the axes that are not cut along allow for pruned surfaces.
+    bool may_be_pruned = false;
+    bool is_apart = false;  // there, of what was pruned nothing is left: such a part is far
+    std::uint32_t joints = 0, split = 0;  // PoseProduct::count and split
+    double r_mm = 0, pose_error_mm = 0;
+    double quarter[kTreeDepthOfParts] = {};  // by level: how far a centre moves
+    PathJoint joint[kTreeJointsMax];         // those that boxes were cut along, in the path's order
+    TreeCut cut[kTreeJointsMax];
+    Pose fixed[kTreeJointsMax + 1];
+};
+
+/// One box, of whose 2^depth parts each is a query.
+struct alignas(16) TreeRoot {
+    double centre[kTreeJointsMax] = {};    // by joint, mm or rad
+    std::uint32_t mesh_a = 0, mesh_b = 0;  // Query::mesh_a, Query::mesh_b
+    std::uint32_t pruned_a = 0, pruned_b = 0;
+    std::uint16_t tree = 0;   // rising by at most one from root to root
+    std::uint16_t group = 0;  // Query::group
+};
+
+/// The parts of a root come in the order of their places, the first cut first.
+struct PartQueries {
+    std::span<const QueryTree> trees{};  // at most kQueryTreesMax
+    std::span<const TreeRoot> roots{};
+    std::uint32_t depth = 0;  // cuts of each; at most kTreeDepthOfParts
+
+    [[nodiscard]] std::size_t count() const noexcept { return roots.size() << depth; }
+};
+
+/// Where the centre of a part lies.
+AXG_HD double part_centre(const QueryTree& tree, const TreeRoot& root, std::uint32_t depth,
+                          std::uint32_t part, std::uint32_t joint) noexcept {
+    double centre = root.centre[joint];
+    for (std::uint32_t level = 0; level < depth; ++level) {
+        if ((tree.cut[joint].levels >> level & 1U) != 0) {
+            const bool is_upper = (part >> (depth - 1 - level) & 1U) != 0;
+            centre = is_upper ? centre + tree.quarter[level] : centre - tree.quarter[level];
+        }
+    }
+    return centre;
+}
+
+/// The query about a part. True: it is far already, and `query` is to be left alone.
+AXG_HD bool part_query(const QueryTree& tree, const TreeRoot& root, std::uint32_t depth,
+                       std::uint32_t part, Query& query) noexcept {
+    bool is_pruned = tree.may_be_pruned;
+    for (std::uint32_t i = 0; i < tree.joints; ++i) {
+        const TreeCut& cut = tree.cut[i];
+        const double centre = part_centre(tree, root, depth, part, i);
+        is_pruned = is_pruned && centre - cut.half >= cut.low && centre + cut.half <= cut.high;
+    }
+    query.kind = tree.kind;
+    query.is_float_only = tree.is_float_only;
+    query.group = root.group;
+    query.mesh_a = is_pruned ? root.pruned_a : root.mesh_a;
+    query.mesh_b = is_pruned ? root.pruned_b : root.mesh_b;
+    query.r_mm = tree.r_mm;
+    query.pose_error_mm = tree.pose_error_mm;
+    query.pose = pose_of(
+        PoseProduct{tree.joint, tree.fixed, tree.joints, tree.split},
+        [&](std::uint32_t i) { return part_centre(tree, root, depth, part, i); },
+        [](double angle_rad) { return sin_cos(angle_rad); });
+    return is_pruned && tree.is_apart;
+}
+
+}  // namespace axg

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the first kernel of a batch does whoever poses its queries: their constants, zeroed
+// counters, one pair of roots a query, and beside it blocks that sum up a slice of the trees.
+#pragma once
+
+#include "cuda/engine/device_traversal.cuh"
+#include "cuda/engine/kernels.hpp"
+#include "cuda/engine/launch_kernel.cuh"
+
+namespace axg::cuda {
+namespace {
+
+constexpr unsigned kThreads = 64;  // queries a block
+static_assert(kThreads == kSumThreads);
+
+/// Whether the engine can run it at all; if so, `prepared` holds what it takes.
+__device__ bool prepare(const DeviceBuffers& b, const Query& q, PreparedQuery& prepared) {
+    prepared.group = q.group;
+    if (b.limits.is_stage && q.kind == QueryKind::clearance) {
+        return false;  // its work is ordered by what was found
+    }
+    if (q.mesh_a >= b.limits.meshes || q.mesh_b >= b.limits.meshes || !usable(q)) {
+        return false;
+    }
+    prepared.a = b.trees[q.mesh_a];
+    prepared.b = b.trees[q.mesh_b];
+    if (prepared.a.node_count == 0 || prepared.b.node_count == 0) {
+        return false;
+    }
+    prepared.pose = q.pose;
+    prepared.inverse = inverse(q.pose);
+    prepared.kind = q.kind;
+    prepared.is_float_only = q.is_float_only;
+    prepared.r_mm = q.r_mm;
+    prepared.wants_list = q.list.size() != 0;
+    set_constants(prepared.c, q, prepared.a.reach_mm, prepared.b.reach_mm);
+    prepared.near_mm = prepared.c.has_margin ? sat::near_limit(q.r_mm) : 0.0F;
+    return true;
+}
+
+/// Zeroes what the query comes to, and lists its two roots.
+/// @param is_far  without a look
+__device__ void start(const DeviceBuffers& b, std::uint32_t index, const Query& q, bool is_far,
+                      std::uint32_t sequence) {
+    Tally tally{};
+    tally.sequence = sequence;
+    tally.refused = prepare(b, q, b.prepared[index]) ? 0 : 1;
+    // Nothing is nearer than 0 mm: a clearance up to there is known without a look.
+    const bool has_work =
+        tally.refused == 0 && !is_far && (q.kind != QueryKind::clearance || q.r_mm > 0);
+    tally.pairs_at[0] = has_work ? 1 : 0;
+    tally.bound_mm = q.r_mm;
+    tally.least_float = 0x7f800000U;
+    tally.least_first = tally.least_second = __builtin_bit_cast(unsigned long long, q.r_mm);
+    tally.nearest = ~0ULL;
+    b.tallies[index] = tally;
+    b.tree_level[0][index] = {has_work ? index : kNoQuery, 0, 0, 0};
+}
+
+/// This block's share of the sum over one slice of the trees.
+__device__ void sum_trees(const TreeSums& sums, std::uint32_t block, std::uint32_t sequence) {
+    const std::uint32_t slice = sequence % sums.slices;
+    const uint4* const words =
+        reinterpret_cast<const uint4*>(sums.words) + static_cast<std::size_t>(slice) * kSliceWords;
+    unsigned long long sum = 0;
+#pragma unroll
+    for (unsigned i = 0; i < kSumLoads; ++i) {
+        const std::uint32_t place = (i * kSumBlocks + block) * kSumThreads + threadIdx.x;
+        const uint4 w = words[place];
+        sum += sum_share(place, {w.x, w.y, w.z, w.w});
+    }
+    for (unsigned step = kWarp / 2; step != 0; step /= 2) {
+        sum += __shfl_xor_sync(kAllLanes, sum, step);
+    }
+    if (lane_of_thread() == 0) {
+        atomicAdd(&sums.found[sequence % 2], sum);
+    }
+}
+
+/// Shares of a stage's groups, from pinned memory.
+__device__ void copy_groups(const DeviceBuffers& b) {
+    constexpr std::uint32_t kWords = sizeof(GroupSums) / sizeof(uint4);
+    const std::uint32_t count = min(b.head->groups, b.limits.queries) * kWords;
+    const uint4* const from = reinterpret_cast<const uint4*>(b.groups_in);
+    uint4* const to = reinterpret_cast<uint4*>(b.groups);
+    for (std::uint32_t i = threadIdx.x; i < count; i += kThreads) {
+        to[i] = from[i];
+    }
+}
+
+/// By one thread of the batch.
+__device__ void start_counters(const DeviceBuffers& b, const BatchHead& head) {
+    const DeviceLimits& limits = b.limits;
+    Counters counters{};
+    counters.sequence = head.sequence;
+    counters.count = min(head.count, limits.queries);
+    counters.groups = head.groups;
+    counters.budget = {limits.level_pairs, limits.leaf_pairs, limits.box_rows,
+                       limits.batch_triangle_pairs, limits.batch_rechecks};
+    counters.listed[0] = counters.count;
+    *b.counters = counters;
+}
+
+/// Blocks that queries take; behind them are those of the sums, and one of the groups.
+[[nodiscard]] AXG_HD unsigned query_blocks(const DeviceLimits& limits) {
+    return (limits.queries + kThreads - 1) / kThreads;
+}
+
+/// Whether this block is one of those, and did its work.
+__device__ bool did_other_work(const DeviceBuffers& b) {
+    const unsigned own = query_blocks(b.limits);
+    if (blockIdx.x < own) {
+        return false;
+    }
+    if (blockIdx.x == own + kSumBlocks) {
+        copy_groups(b);
+    } else {
+        sum_trees(b.sums, blockIdx.x - own, b.head->sequence);
+    }
+    return true;
+}
+
+}  // namespace
+}  // namespace axg::cuda
