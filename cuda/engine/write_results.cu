@@ -9,7 +9,8 @@
 namespace axg::cuda {
 namespace {
 
-constexpr unsigned kThreads = 512;
+constexpr unsigned kThreads = 64;  // queries a block, and groups
+static_assert(kTreeLevelsMax <= kWarp, "a lane a tree level");
 
 /// Whether every pair of nodes that was listed was looked at, in trees that are as they were; and
 /// whether no budget was left for one, or for a pair of triangles.
@@ -17,24 +18,26 @@ struct BatchState {
     bool is_complete, is_over, is_over_triangles;
 };
 
+/// Called by whole warps, so that all loads are on their way at once.
 __device__ BatchState state_of(const DeviceBuffers& b) {
     const Counters& counters = *b.counters;
     const BatchBudget& budget = counters.budget;
     const TreeSums& sums = b.sums;
-    BatchState state{
-        true, counters.leaf_listed > budget.leaf_pairs || counters.box_rows > budget.box_rows,
-        counters.triangle_pairs > budget.triangle_pairs};
-    for (std::uint32_t i = 0; i < kTreeLevelsMax; ++i) {
-        const std::uint32_t most = tree_level_budget(b, i), listed = counters.listed[i];
-        state.is_over = state.is_over || listed > most;
-        state.is_complete = state.is_complete && counters.handled[i] == min(listed, most);
-    }
-    state.is_complete =
-        state.is_complete && counters.leaf_handled == min(counters.leaf_listed, budget.leaf_pairs);
     const bool is_same =
         sums.found[counters.sequence % 2] == sums.wanted[counters.sequence % sums.slices];
-    state.is_complete = state.is_complete && is_same;
-    return state;
+    const bool is_level = lane_of_thread() < kTreeLevelsMax;
+    const std::uint32_t tree_level = is_level ? lane_of_thread() : 0;
+    const std::uint32_t most = tree_level_budget(b, tree_level),
+                        listed = counters.listed[tree_level],
+                        handled = counters.handled[tree_level];
+    const std::uint32_t leaf_listed = counters.leaf_listed, box_rows = counters.box_rows;
+    const bool is_leaf_complete = counters.leaf_handled == min(leaf_listed, budget.leaf_pairs);
+    const bool is_leaf_over = leaf_listed > budget.leaf_pairs || box_rows > budget.box_rows;
+    const bool is_over_triangles = counters.triangle_pairs > budget.triangle_pairs;
+    const bool is_level_complete = ballot(is_level && handled != min(listed, most)) == 0;
+    const bool is_level_over = ballot(is_level && listed > most) != 0;
+    return {is_level_complete && is_leaf_complete && is_same, is_level_over || is_leaf_over,
+            is_over_triangles};
 }
 
 __device__ bool has_seen_all(const DeviceBuffers& b, std::uint32_t index, QueryKind kind) {
@@ -136,18 +139,15 @@ __global__ void __launch_bounds__(kThreads)
     write_results_kernel(const __grid_constant__ DeviceBuffers b) {
     wait_for_kernel_before();
     const Counters& counters = *b.counters;
+    const std::uint32_t i = blockIdx.x * kThreads + threadIdx.x;
     const BatchState state = state_of(b);
-    for (std::uint32_t i = threadIdx.x; i < counters.count; i += kThreads) {
+    if (i < counters.count) {
         b.results[i] = result_of(b, i, state);
     }
-    if (b.limits.is_stage) {
-        const std::uint32_t groups = min(counters.groups, b.limits.queries);
-        for (std::uint32_t i = threadIdx.x; i < groups; i += kThreads) {
-            b.groups_out[i] = group_result_of(b.groups[i]);
-        }
+    if (b.limits.is_stage && i < min(counters.groups, b.limits.queries)) {
+        b.groups_out[i] = group_result_of(b.groups[i]);
     }
-    __syncthreads();
-    if (threadIdx.x == 0) {
+    if (i == 0) {  // the next batch's; this kernel reads the other one
         b.sums.found[(counters.sequence + 1) % 2] = 0;
     }
 }
@@ -155,7 +155,8 @@ __global__ void __launch_bounds__(kThreads)
 }  // namespace
 
 cudaError_t launch_write_results(const DeviceBuffers& buffers, const Launch& launch) noexcept {
-    return launch_kernel(write_results_kernel, 1, kThreads, launch, buffers);
+    const unsigned blocks = (buffers.limits.queries + kThreads - 1) / kThreads;
+    return launch_kernel(write_results_kernel, blocks, kThreads, launch, buffers);
 }
 
 }  // namespace axg::cuda
