@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Opens the pairs of nodes of one tree level, a block a pair: children of each against the other's
-// own box, then every child left against every child left, a warp a child of a, a lane a child of
-// b. The same rules as core/collision/traverse.inl, so the same pairs are found.
+// own box, then every child left against every child left, a warp a child of a (a row), a lane a
+// child of b. What all rows found is charged, counted and listed at once: a chain of atomics costs
+// more than a row. The same rules as core/collision/traverse.inl, so the same pairs are found.
 #include "cuda/engine/device_traversal.cuh"
 #include "cuda/engine/kernels.hpp"
 #include "cuda/engine/launch_kernel.cuh"
@@ -11,11 +12,47 @@ namespace {
 
 constexpr unsigned kWarps = 4, kThreads = kWarps * kWarp, kBlocksPerMultiprocessor = 6;
 
+/// A child of a, as all lanes of its row read it.
+struct alignas(16) Row {
+    Moved moved;               // its box, as a has it
+    std::uint32_t leaf, more;  // of its node
+    // Of a leaf: its centre, where that gets to, and where exactly less that.
+    float centre[3], origin[3], shift[3];
+};
+
+/// What the rows of an opened pair have in common, and what they found.
+struct Rows {
+    Row of[kNodeWidth];                  // by child of a
+    std::uint8_t child[kNodeWidth];      // of a, by row
+    std::uint32_t leaves_b;              // children of b that are leaves
+    std::uint32_t more_b[kNodeWidth];    // of their nodes
+    std::uint32_t near[kNodeWidth];      // children of b, by row; at the end those to be stored
+    std::uint32_t before[kNodeWidth];    // pairs of the rows before: of leaves, and << 16 others
+    std::uint32_t charged[kWarps];       // by warp: pairs of leaves
+    std::uint32_t leaves_at, others_at;  // places of the first pairs
+};
+
 struct Shared {
     std::uint32_t bits_a, bits_b;
     std::uint32_t rows[2];  // of the batch, as far as this block knows; in turns
     float low_a[kNodeWidth], low_b[kNodeWidth];
+    Rows both;
 };
+
+/// charged_rows and charged_leaves, of what is kept of the nodes.
+AXG_HD constexpr std::uint32_t charge_of_row(std::uint32_t more) {
+    return 1 + more;
+}
+AXG_HD constexpr std::uint32_t charge_of_leaves(std::uint32_t more_a, std::uint32_t more_b) {
+    return 1 + more_a + more_b;
+}
+constexpr TreeNode node_with(std::uint32_t more) {
+    TreeNode node{};
+    node.more = more;
+    return node;
+}
+static_assert(charge_of_row(7) == charged_rows(node_with(7)));
+static_assert(charge_of_leaves(7, 50) == charged_leaves(node_with(7), node_with(50)));
 
 /// One opened pair of nodes.
 struct Opened {
@@ -87,18 +124,15 @@ __device__ void append(const DeviceBuffers& buffers, const PreparedQuery& q, con
     }
 }
 
-/// Whether child `lane` of b is near child i of a: boxes along both bodies' axes, and where the
-/// child of a is a leaf also the tight box of its moved triangles.
-__device__ bool is_near_child(const PreparedQuery& q, const TreeNode& child_a, const Moved& moved,
-                              const ChildBox& box, bool wanted) {
-    bool near = wanted && is_near<false>(q.c.a_in_b, moved, box);
-    if (ballot(near) != 0 && is_leaf(child_a)) {
-        const Moved own = moved_box(q.c.a_in_b, child_a.box.c, child_a.box.h);
-        const float* const centre = child_a.box.c;
-        const MovedCentres to = move_centres<false>(q, centre, nullptr, own.c);
+/// Whether child `lane` of b is near the row's child of a: boxes along both bodies' axes, and where
+/// the child of a is a leaf also the tight box of its moved triangles.
+__device__ bool is_near_child(const PreparedQuery& q, const Row& row, const ChildBox& box,
+                              bool wanted) {
+    bool near = wanted && is_near<false>(q.c.a_in_b, row.moved, box);
+    if (ballot(near) != 0 && row.leaf != kNoLeaf) {
         const TightBox whole = whole_of(move_triangle(
-            q.c.a_in_b, centre, to.a, q.a.leaves[child_a.leaf], lane_of_thread(), nullptr));
-        near = near && !apart_from_tight(whole, box.c, box.h, own.c, q.c.tight_slack);
+            q.c.a_in_b, row.centre, row.shift, q.a.leaves[row.leaf], lane_of_thread(), nullptr));
+        near = near && !apart_from_tight(whole, box.c, box.h, row.origin, q.c.tight_slack);
     }
     return near;
 }
@@ -108,22 +142,11 @@ __device__ std::uint32_t count_rows(const DeviceBuffers& buffers, std::uint32_t 
     return threadIdx.x == 0 && more != 0 ? atomicAdd(&buffers.counters->box_rows, more) + more : 0;
 }
 
-/// Charges the rows of an opened pair to its group: the children of a in `bits`. Called by whole
-/// warps.
-__device__ void charge_rows(const DeviceBuffers& buffers, const PreparedQuery& q, const Opened& o,
-                            std::uint32_t bits) {
-    const unsigned lane = lane_of_thread();
-    const std::uint32_t charged =
-        warp_sum((bits >> lane & 1U) != 0 ? charged_rows(q.a.nodes[o.a.first_child + lane]) : 0);
-    if (lane == 0 && bits != 0) {
-        charge(buffers.groups[q.group], kBoxRowsPlace, charged, loss_of_rows(o.tree_level));
-    }
-}
-
-/// Returns the batch's rows of boxes so far, to the first thread.
-__device__ std::uint32_t open_both(const DeviceBuffers& buffers, const PreparedQuery& q,
-                                   const Opened& o, Shared& shared) {
+/// Children of each against the other's own box: a warp the children of b, another those of a. The
+/// other two meanwhile read and move what the rows need, a lane a child.
+__device__ void look_at_children(const PreparedQuery& q, const Opened& o, Shared& shared) {
     const unsigned lane = lane_of_thread(), warp = threadIdx.x / kWarp;
+    Rows& rows = shared.both;
     if (warp < 2) {  // warp 0: children of b against a's box; warp 1: the other way round
         const TreeNode& node = warp == 0 ? o.b : o.a;
         const Aabb& box = warp == 0 ? o.a.box : o.b.box;
@@ -134,27 +157,187 @@ __device__ std::uint32_t open_both(const DeviceBuffers& buffers, const PreparedQ
         if (lane == 0) {
             (warp == 0 ? shared.bits_b : shared.bits_a) = bits;
         }
+        if (warp == 1 && near) {
+            rows.child[rank_in(bits)] = static_cast<std::uint8_t>(lane);
+        }
+    } else if (warp == 2) {
+        const bool is_child = lane < o.b.count;
+        const TreeNode* const child = q.b.nodes + o.b.first_child + (is_child ? lane : 0);
+        const std::uint32_t leaf = child->leaf, more = child->more;
+        const ChildBox own = child_box(o.a, lane);
+        rows.of[lane].moved = moved_box(q.c.a_in_b, own.c, own.h);
+        rows.more_b[lane] = more;
+        const std::uint32_t leaves = ballot(is_child && leaf != kNoLeaf);
+        if (lane == 0) {
+            rows.leaves_b = leaves;
+        }
+    } else if (lane < o.a.count) {
+        const TreeNode& child = q.a.nodes[o.a.first_child + lane];
+        Row& row = rows.of[lane];
+        row.leaf = child.leaf;
+        row.more = child.more;
+        if (is_leaf(child)) {
+            const Moved own = moved_box(q.c.a_in_b, child.box.c, child.box.h);
+            for (int k = 0; k < 3; ++k) {
+                row.centre[k] = child.box.c[k];
+                row.origin[k] = own.c[k];
+                row.shift[k] = moved_centre(q.pose, k, child.box.c, own.c[k]);
+            }
+        }
     }
-    __syncthreads();
-    const std::uint32_t bits_b = shared.bits_b;
+}
+
+/// This warp's rows. Whether any of them found a pair.
+__device__ bool test_rows(const DeviceBuffers& buffers, const PreparedQuery& q, const Opened& o,
+                          unsigned row_count, std::uint32_t bits_b, Rows& rows) {
+    const unsigned lane = lane_of_thread(), warp = threadIdx.x / kWarp;
     const ChildBox box = child_box(o.b, lane);
-    std::uint32_t bits_a = bits_b == 0 ? 0 : shared.bits_a;
-    const std::uint32_t rows = count_rows(buffers, static_cast<std::uint32_t>(__popc(bits_a)));
-    for (unsigned n = 0; bits_a != 0; bits_a &= bits_a - 1, ++n) {
-        if (n % kWarps != warp) {
+    const bool wanted = (bits_b >> lane & 1U) != 0, leaf_b = (rows.leaves_b >> lane & 1U) != 0;
+    const std::uint32_t more_b = rows.more_b[lane];
+    std::uint32_t found = 0, charged = 0;
+    for (unsigned n = warp; n < row_count; n += kWarps) {
+        const Row& row = rows.of[rows.child[n]];
+        const bool near = is_near_child(q, row, box, wanted);
+        const std::uint32_t bits = ballot(near);
+        charged += near && leaf_b && row.leaf != kNoLeaf ? charge_of_leaves(row.more, more_b) : 0;
+        found |= bits;
+        if (lane == 0) {
+            rows.near[n] = bits;
+        }
+    }
+    if (buffers.limits.is_stage) {
+        charged = warp_sum(charged);
+        if (lane == 0) {
+            rows.charged[warp] = charged;
+        }
+    }
+    return found != 0;
+}
+
+/// Pairs of leaves among what row n found.
+__device__ __forceinline__ std::uint32_t leaves_in(const Rows& rows, unsigned n,
+                                                   std::uint32_t bits) {
+    return rows.of[rows.child[n]].leaf != kNoLeaf ? bits & rows.leaves_b : 0;
+}
+
+/// Charges and counts all rows, and takes places for the pairs that they found: of a group all
+/// pairs of leaves or none, and likewise of the others. Called by the first warp, a lane a row.
+/// Returns the batch's rows of boxes so far, to the first thread.
+__device__ std::uint32_t list_rows(const DeviceBuffers& buffers, const PreparedQuery& q,
+                                   const Opened& o, unsigned row_count, Rows& rows) {
+    const unsigned lane = lane_of_thread();
+    const bool is_row = lane < row_count;
+    const std::uint32_t bits = is_row ? rows.near[lane] : 0;
+    const std::uint32_t leaf_bits = is_row ? leaves_in(rows, lane, bits) : 0;
+    const std::uint32_t other_bits = bits & ~leaf_bits;
+    // Both sums in one: neither passes kLeafPairs.
+    static_assert(kLeafPairs < 1U << 16U);
+    const auto own = static_cast<std::uint32_t>(__popc(leaf_bits)) |
+                     static_cast<std::uint32_t>(__popc(other_bits)) << 16U;
+    const std::uint32_t of_rows =
+        warp_sum(is_row ? charge_of_row(rows.of[rows.child[lane]].more) : 0);
+    std::uint32_t sum = own;
+    for (unsigned step = 1; step < kWarp; step *= 2) {
+        const std::uint32_t below = __shfl_up_sync(kAllLanes, sum, step);
+        sum += lane >= step ? below : 0;
+    }
+    const std::uint32_t all = __shfl_sync(kAllLanes, sum, kWarp - 1);
+    const std::uint32_t leaves = all & 0xffffU, others = all >> 16U;
+    // A lane each, so that none waits for another.
+    Counters& counters = *buffers.counters;
+    std::uint32_t rows_before = 0;
+    bool fits = true;
+    if (lane == 0) {
+        rows_before = atomicAdd(&counters.box_rows, row_count);
+    } else if (lane == 1 && all != 0) {
+        atomicAdd(&buffers.tallies[o.at.query].pairs_at[o.tree_level + 1], leaves + others);
+    }
+    constexpr unsigned kLeavesLane = 2, kOthersLane = 3, kRowsLane = 4;
+    if (buffers.limits.is_stage) {
+        std::uint32_t of_leaves = 0;
+        for (const std::uint32_t charged : rows.charged) {
+            of_leaves += charged;
+        }
+        const std::uint32_t more = lane == kLeavesLane   ? of_leaves
+                                   : lane == kOthersLane ? others
+                                   : lane == kRowsLane   ? of_rows
+                                                         : 0;
+        const WorkListPlace list = lane == kLeavesLane   ? kLeafPairsPlace
+                                   : lane == kOthersLane ? kNodePairsPlace
+                                                         : kBoxRowsPlace;
+        if (more != 0) {
+            fits = charge(buffers.groups[q.group], list, more,
+                          lane == kLeavesLane   ? loss_of_leaves(o.tree_level)
+                          : lane == kOthersLane ? loss_of_nodes(o.tree_level)
+                                                : loss_of_rows(o.tree_level));
+        }
+    }
+    const std::uint32_t fitting = ballot(fits);
+    const bool leaves_fit = (fitting >> kLeavesLane & 1U) != 0,
+               others_fit = (fitting >> kOthersLane & 1U) != 0;
+    const std::uint32_t places = lane == 0   ? (leaves_fit ? leaves : 0)
+                                 : lane == 1 ? (others_fit ? others : 0)
+                                             : 0;
+    if (places != 0) {
+        std::uint32_t& listed =
+            lane == 0 ? counters.leaf_listed : counters.listed[o.tree_level + 1];
+        (lane == 0 ? rows.leaves_at : rows.others_at) = atomicAdd(&listed, places);
+    }
+    if (is_row) {
+        rows.near[lane] = (leaves_fit ? leaf_bits : 0) | (others_fit ? other_bits : 0);
+        rows.before[lane] = sum - own;
+    }
+    return rows_before + row_count;
+}
+
+/// Stores what this warp's rows found and list_rows has places for.
+__device__ void store_rows(const DeviceBuffers& buffers, const Opened& o, unsigned row_count,
+                           std::uint32_t leaf_budget, std::uint32_t level_budget,
+                           const Rows& rows) {
+    const unsigned lane = lane_of_thread();
+    for (unsigned n = threadIdx.x / kWarp; n < row_count; n += kWarps) {
+        const std::uint32_t bits = rows.near[n], leaf_bits = leaves_in(rows, n, bits);
+        if (bits == 0) {
             continue;
         }
-        const unsigned i = lowest(bits_a);
-        const ChildBox own = child_box(o.a, i);
-        const std::uint32_t child_a = o.a.first_child + i;
-        const bool near = is_near_child(q, q.a.nodes[child_a], moved_box(q.c.a_in_b, own.c, own.h),
-                                        box, (bits_b >> lane & 1U) != 0);
-        append(buffers, q, o, near, child_a, o.b.first_child + lane, 0);
+        const bool leaves = (leaf_bits >> lane & 1U) != 0;
+        const std::uint32_t place =
+            leaves ? rows.leaves_at + (rows.before[n] & 0xffffU) + rank_in(leaf_bits)
+                   : rows.others_at + (rows.before[n] >> 16U) + rank_in(bits & ~leaf_bits);
+        if ((bits >> lane & 1U) != 0 && place < (leaves ? leaf_budget : level_budget)) {
+            PairEntry* const list =
+                leaves ? buffers.leaves : buffers.tree_level[(o.tree_level + 1) % 2];
+            list[place] = {o.at.query, o.a.first_child + rows.child[n], o.b.first_child + lane, 0};
+        }
     }
-    if (buffers.limits.is_stage && warp == 0) {
-        charge_rows(buffers, q, o, bits_b == 0 ? 0 : shared.bits_a);
+}
+
+/// Returns the batch's rows of boxes so far, to the first thread.
+/// @param lost  whether this thread saw the group lost; others may not have
+__device__ std::uint32_t open_both(const DeviceBuffers& buffers, const PreparedQuery& q,
+                                   const Opened& o, bool lost, Shared& shared) {
+    look_at_children(q, o, shared);
+    if (__syncthreads_or(lost ? 1 : 0) != 0) {
+        return 0;
     }
-    return rows;
+    const std::uint32_t bits_b = shared.bits_b;
+    const auto row_count = bits_b == 0 ? 0U : static_cast<std::uint32_t>(__popc(shared.bits_a));
+    if (row_count == 0) {
+        return 0;
+    }
+    const bool finds = test_rows(buffers, q, o, row_count, bits_b, shared.both);
+    const bool any = __syncthreads_or(finds ? 1 : 0) != 0;
+    const std::uint32_t leaf_budget = buffers.counters->budget.leaf_pairs,
+                        level_budget = buffers.counters->budget.level_pairs;
+    std::uint32_t so_far = 0;
+    if (threadIdx.x < kWarp) {
+        so_far = list_rows(buffers, q, o, row_count, shared.both);
+    }
+    if (any) {
+        __syncthreads();
+        store_rows(buffers, o, row_count, leaf_budget, level_budget, shared.both);
+    }
+    return so_far;
 }
 
 /// Opens b alone (a is a leaf) or a alone (b is a leaf). The first warp does it.
@@ -227,13 +410,16 @@ __device__ std::uint32_t open(const DeviceBuffers& buffers, const PairEntry& at,
     const bool leaf_a = is_leaf(o.a), leaf_b = is_leaf(o.b),
                measures = q.kind == QueryKind::clearance;
     const double bound = tally.bound_mm;
-    // Other blocks lose groups meanwhile: all threads of this one have to see the same.
-    if (buffers.limits.is_stage &&
-        __syncthreads_or(is_lost(buffers, q, loss_of_rows(tree_level)) ? 1 : 0) != 0) {
-        return 0;
-    }
+    const bool lost = is_lost(buffers, q, loss_of_rows(tree_level));
     if (is_over(tally, tree_level, buffers.limits.node_pairs) ||
         (measures && !(at.low_mm < bound))) {
+        return 0;
+    }
+    if (!leaf_a && !leaf_b && !measures) {
+        return open_both(buffers, q, o, lost, shared);
+    }
+    // Other blocks lose groups meanwhile: all threads of this one have to see the same.
+    if (buffers.limits.is_stage && __syncthreads_or(lost ? 1 : 0) != 0) {
         return 0;
     }
     if (leaf_a && leaf_b) {  // two roots: pairs found further down go to the leaves at once
@@ -250,7 +436,7 @@ __device__ std::uint32_t open(const DeviceBuffers& buffers, const PairEntry& at,
     if (leaf_a || leaf_b) {
         return open_one(buffers, q, o, measures, bound);
     }
-    return measures ? open_nearest(buffers, q, o, bound, shared) : open_both(buffers, q, o, shared);
+    return open_nearest(buffers, q, o, bound, shared);
 }
 
 __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
