@@ -10,7 +10,7 @@
 namespace axg::cuda {
 namespace {
 
-constexpr unsigned kWarps = 4, kThreads = kWarps * kWarp, kBlocksPerMultiprocessor = 6;
+constexpr unsigned kWarps = 4, kThreads = kWarps * kWarp, kBlocksPerMultiprocessor = 8;
 
 /// A child of a, as all lanes of its row read it.
 struct alignas(16) Row {
@@ -35,6 +35,7 @@ struct Rows {
 struct Shared {
     std::uint32_t bits_a, bits_b;
     std::uint32_t rows[2];  // of the batch, as far as this block knows; in turns
+    PairEntry next[kWarp];  // this block's, as many as are read at once
     float low_a[kNodeWidth], low_b[kNodeWidth];
     Rows both;
 };
@@ -56,7 +57,7 @@ static_assert(charge_of_leaves(7, 50) == charged_leaves(node_with(7), node_with(
 
 /// One opened pair of nodes.
 struct Opened {
-    PairEntry at;
+    const PairEntry& at;
     std::uint32_t tree_level;
     const TreeNode& a;
     const TreeNode& b;
@@ -439,6 +440,17 @@ __device__ std::uint32_t open(const DeviceBuffers& buffers, const PairEntry& at,
     return open_nearest(buffers, q, o, bound, shared);
 }
 
+/// The next pairs of this block, from the i-th of the level on: a lane a pair, so that only one in
+/// many waits for the memory. Called by whole blocks, when nobody reads the last ones any more.
+__device__ void read_pairs(const DeviceBuffers& b, std::uint32_t i, std::uint32_t count,
+                           std::uint32_t tree_level, Shared& shared) {
+    const std::uint32_t own = i + threadIdx.x * gridDim.x;
+    if (threadIdx.x < kWarp && own < count) {
+        shared.next[threadIdx.x] = b.tree_level[tree_level % 2][own];
+    }
+    __syncthreads();
+}
+
 __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
     open_pairs_kernel(const __grid_constant__ DeviceBuffers b, std::uint32_t tree_level) {
     wait_for_kernel_before();
@@ -448,7 +460,10 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
         min(b.counters->listed[tree_level], tree_level_budget(b, tree_level));
     std::uint32_t handled = 0, rows = 0;
     for (std::uint32_t i = blockIdx.x; i < count; i += gridDim.x, ++handled) {
-        const PairEntry at = b.tree_level[tree_level % 2][i];
+        if (handled % kWarp == 0) {
+            read_pairs(b, i, count, tree_level, shared);
+        }
+        const PairEntry& at = shared.next[handled % kWarp];
         // Rows beyond the limit: the whole batch is not proven, whatever is left out here.
         if (at.query != kNoQuery && rows <= budget.box_rows) {
             rows = max(rows, open(b, at, tree_level, shared));
