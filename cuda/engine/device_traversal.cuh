@@ -56,15 +56,12 @@ __device__ __forceinline__ bool is_leaf(const TreeNode& node) {
     return node.leaf != kNoLeaf;
 }
 
-/// Least and greatest of a warp's values. A zero may come out with either sign.
+/// Least of a warp's values. A zero may come out with either sign.
 __device__ __forceinline__ float warp_least(float value) {
     for (unsigned step = kWarp / 2; step != 0; step /= 2) {
         value = fminf(value, __shfl_xor_sync(kAllLanes, value, step));
     }
     return value;
-}
-__device__ __forceinline__ float warp_most(float value) {
-    return -warp_least(-value);
 }
 
 /// One triangle's box along the other body's axes, from moved vertices.
@@ -73,12 +70,31 @@ struct TightBox {
 };
 
 /// The boxes of a warp's triangles together: of the leaf, `leaf_low` and `leaf_high` of the
-/// traversal.
+/// traversal. Half of the lanes go on with half of the six numbers at each step: 14 exchanges
+/// instead of 30, of which a multiprocessor has one a clock. A zero may come out with either sign.
 __device__ __forceinline__ TightBox whole_of(const TightBox& own) {
+    const auto least_with = [](float kept, float given, unsigned step) {
+        return fminf(kept, __shfl_xor_sync(kAllLanes, given, step));
+    };
+    const unsigned lane = lane_of_thread();
+    const bool has_high = (lane & 16U) != 0, has_second = (lane & 8U) != 0,
+               has_third = (lane & 4U) != 0;
+    float axis[3];  // low, or high with the other sign
+    for (int k = 0; k < 3; ++k) {
+        const float low = own.low[k], high = -own.high[k];
+        axis[k] = least_with(has_high ? high : low, has_high ? low : high, 16);
+    }
+    const float first =
+        least_with(has_second ? axis[1] : axis[0], has_second ? axis[0] : axis[1], 8);
+    const float third = least_with(axis[2], axis[2], 8);
+    float least = least_with(has_third ? third : first, has_third ? first : third, 4);
+    least = least_with(least, least, 2);
+    least = least_with(least, least, 1);
     TightBox whole;
     for (int k = 0; k < 3; ++k) {
-        whole.low[k] = warp_least(own.low[k]);
-        whole.high[k] = warp_most(own.high[k]);
+        const int lane_of_axis = k == 0 ? 0 : k == 1 ? 8 : 4;
+        whole.low[k] = __shfl_sync(kAllLanes, least, lane_of_axis);
+        whole.high[k] = -__shfl_sync(kAllLanes, least, 16 + lane_of_axis);
     }
     return whole;
 }
