@@ -14,7 +14,7 @@ namespace axg {
 
 namespace {
 
-constexpr std::uint32_t kAhead = 12;  // items that are written before a place of theirs is
+constexpr std::uint32_t kAhead = 12;        // items that are written before a place of theirs is
 
 void add(WorkLists& sum, const WorkLists& more) noexcept {
     sum.node_pairs += more.node_pairs;

@@ -54,32 +54,51 @@ struct alignas(16) TreeRoot {
 struct PartQueries {
     std::span<const QueryTree> trees{};  // at most kQueryTreesMax
     std::span<const TreeRoot> roots{};
-    std::uint32_t depth = 0;  // cuts of each; at most kTreeDepthOfParts
+    std::uint32_t depth = 1;  // cuts of each: 1 to kTreeDepthOfParts
 
     [[nodiscard]] std::size_t count() const noexcept { return roots.size() << depth; }
 };
 
-/// Where the centre of a part lies.
-AXG_HD double part_centre(const QueryTree& tree, const TreeRoot& root, std::uint32_t depth,
-                          std::uint32_t part, std::uint32_t joint) noexcept {
-    double centre = root.centre[joint];
-    for (std::uint32_t level = 0; level < depth; ++level) {
-        if ((tree.cut[joint].levels >> level & 1U) != 0) {
-            const bool is_upper = (part >> (depth - 1 - level) & 1U) != 0;
-            centre = is_upper ? centre + tree.quarter[level] : centre - tree.quarter[level];
-        }
-    }
-    return centre;
+/// The lowest bit that is set. Precondition: one is.
+AXG_HD std::uint32_t lowest_bit(std::uint32_t bits) noexcept {
+#if defined(__CUDA_ARCH__)
+    return static_cast<std::uint32_t>(__ffs(static_cast<int>(bits))) - 1;
+#else
+    return static_cast<std::uint32_t>(__builtin_ctz(bits));
+#endif
 }
 
-/// The query about a part. True: it is far already, and `query` is to be left alone.
-AXG_HD bool part_query(const QueryTree& tree, const TreeRoot& root, std::uint32_t depth,
-                       std::uint32_t part, Query& query) noexcept {
+/// A part of a root; says where its centre lies.
+struct Part {
+    const QueryTree& tree;
+    const TreeRoot& root;
+    std::uint32_t depth, place;
+
+    /// Along the axis of a joint.
+    AXG_HD double operator()(std::uint32_t joint) const noexcept {
+        double centre = root.centre[joint];
+        for (std::uint32_t left = tree.cut[joint].levels; left != 0; left &= left - 1) {
+            const std::uint32_t level = lowest_bit(left);
+            const bool is_upper = (place >> (depth - 1 - level) & 1U) != 0;
+            centre = is_upper ? centre + tree.quarter[level] : centre - tree.quarter[level];
+        }
+        return centre;
+    }
+};
+
+AXG_HD PoseProduct product_of(const QueryTree& tree) noexcept {
+    return {tree.joint, tree.fixed, tree.joints, tree.split};
+}
+
+/// All of the query about a part but its pose. True: it is far already, and nothing is to be asked.
+AXG_HD bool fill_query(const Part& part, Query& query) noexcept {
+    const QueryTree& tree = part.tree;
+    const TreeRoot& root = part.root;
     bool is_pruned = tree.may_be_pruned;
-    for (std::uint32_t i = 0; i < tree.joints; ++i) {
+    for (std::uint32_t i = 0; is_pruned && i < tree.joints; ++i) {
         const TreeCut& cut = tree.cut[i];
-        const double centre = part_centre(tree, root, depth, part, i);
-        is_pruned = is_pruned && centre - cut.half >= cut.low && centre + cut.half <= cut.high;
+        const double centre = part(i);
+        is_pruned = centre - cut.half >= cut.low && centre + cut.half <= cut.high;
     }
     query.kind = tree.kind;
     query.is_float_only = tree.is_float_only;
@@ -88,11 +107,14 @@ AXG_HD bool part_query(const QueryTree& tree, const TreeRoot& root, std::uint32_
     query.mesh_b = is_pruned ? root.pruned_b : root.mesh_b;
     query.r_mm = tree.r_mm;
     query.pose_error_mm = tree.pose_error_mm;
-    query.pose = pose_of(
-        PoseProduct{tree.joint, tree.fixed, tree.joints, tree.split},
-        [&](std::uint32_t i) { return part_centre(tree, root, depth, part, i); },
-        [](double angle_rad) { return sin_cos(angle_rad); });
     return is_pruned && tree.is_apart;
+}
+
+/// The whole query; as above.
+AXG_HD bool part_query(const Part& part, Query& query) noexcept {
+    query.pose =
+        pose_of(product_of(part.tree), part, [](double angle_rad) { return sin_cos(angle_rad); });
+    return fill_query(part, query);
 }
 
 }  // namespace axg

@@ -77,13 +77,14 @@ struct PoseProduct {
     std::uint32_t count, split;  // joints; those of the first half
 };
 
-/// From the first body to the middle of the path.
+/// From fixed[begin] past the joints up to `end`.
 /// @param at  position of joint i
 template <class At, class Sines>
-AXG_HD Pose right_of(const PoseProduct& p, const At& at, const Sines& sines) noexcept {
-    Pose out = p.fixed[0];
-    for (std::uint32_t i = 0; i < p.split; ++i) {
-        if (i != 0) {
+AXG_HD Pose stretch_of(const PoseProduct& p, std::uint32_t begin, std::uint32_t end, const At& at,
+                       const Sines& sines) noexcept {
+    Pose out = p.fixed[begin];
+    for (std::uint32_t i = begin; i < end; ++i) {
+        if (i != begin) {
             out = compose(p.fixed[i], out);
         }
         move_by(p.joints[i], at(i), sines, out);
@@ -91,15 +92,18 @@ AXG_HD Pose right_of(const PoseProduct& p, const At& at, const Sines& sines) noe
     return out;
 }
 
-/// And on to the second one. Precondition: split < count.
+/// From the first body to the middle of the path.
+template <class At, class Sines>
+AXG_HD Pose right_of(const PoseProduct& p, const At& at, const Sines& sines) noexcept {
+    return stretch_of(p, 0, p.split, at, sines);
+}
+
+/// And on to the second one.
 template <class At, class Sines>
 AXG_HD Pose left_of(const PoseProduct& p, const At& at, const Sines& sines) noexcept {
-    Pose out = p.fixed[p.split];
-    for (std::uint32_t i = p.split; i < p.count; ++i) {
-        move_by(p.joints[i], at(i), sines, out);
-        out = compose(p.fixed[i + 1], out);
-    }
-    return out;
+    return p.split == p.count
+               ? p.fixed[p.count]
+               : compose(p.fixed[p.count], stretch_of(p, p.split, p.count, at, sines));
 }
 
 /// The whole product.
@@ -108,8 +112,7 @@ AXG_HD Pose pose_of(const PoseProduct& p, const At& at, const Sines& sines) noex
     if (p.count == 0) {
         return p.fixed[0];
     }
-    const Pose right = right_of(p, at, sines);
-    return compose(p.split == p.count ? p.fixed[p.count] : left_of(p, at, sines), right);
+    return compose(left_of(p, at, sines), right_of(p, at, sines));
 }
 
 }  // namespace axg

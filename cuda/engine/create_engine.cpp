@@ -80,7 +80,7 @@ void place_pinned(CudaEngine::Parts& parts, MemoryBlock& host, MemoryBlock& devi
     parts.head = host.take<BatchHead>(1);
     parts.queries = host.take<Query>(limits.queries);
     parts.query_trees = host.take<QueryTree>(kQueryTreesMax);
-    parts.roots = host.take<TreeRoot>(limits.queries);
+    parts.part_blocks = host.take<PartBlock>(part_blocks(limits.queries));
     parts.results = host.take<DeviceResult>(limits.queries);
     parts.listed = host.take<TriangleIds>(std::size_t{limits.queries} * limits.listed);
     parts.groups_in = host.take<GroupSums>(limits.queries);
@@ -88,7 +88,7 @@ void place_pinned(CudaEngine::Parts& parts, MemoryBlock& host, MemoryBlock& devi
     parts.buffers.head = device.take<BatchHead>(1);
     parts.buffers.queries = device.take<Query>(limits.queries);
     parts.buffers.query_trees = device.take<QueryTree>(kQueryTreesMax);
-    parts.buffers.roots = device.take<TreeRoot>(limits.queries);
+    parts.buffers.part_blocks = device.take<PartBlock>(part_blocks(limits.queries));
     parts.buffers.results = device.take<DeviceResult>(limits.queries);
     parts.buffers.listed = device.take<TriangleIds>(std::size_t{limits.queries} * limits.listed);
     parts.buffers.groups_in = device.take<GroupSums>(limits.queries);
@@ -273,7 +273,8 @@ void warm_up(CudaEngine& engine) {
     engine.run({&query, 1}, {&result, 1}, {&group, 1});
     const QueryTree tree{};
     const TreeRoot root;
-    engine.run(PartQueries{{&tree, 1}, {&root, 1}}, {}, {&result, 1}, {&group, 1});
+    QueryResult both[2];
+    engine.run(PartQueries{{&tree, 1}, {&root, 1}}, {}, both, {&group, 1});
     query.is_float_only = false;
     query.kind = QueryKind::clearance;
     engine.run({&query, 1}, {&result, 1});

@@ -20,7 +20,8 @@ namespace {
 using namespace cuda;
 using Clock = std::chrono::steady_clock;
 
-constexpr int kPoison = 0xa5;  // no result that was not written looks like one
+constexpr std::size_t kAhead = 12;  // results
+constexpr int kPoison = 0xa5;       // no result that was not written looks like one
 
 /// One result out of pinned memory; false where it is not there yet, or not whole.
 bool read_result(DeviceResult& from, std::uint32_t sequence, QueryResult& to) noexcept {
@@ -74,29 +75,56 @@ bool wait_for(From& from, std::uint32_t sequence, Clock::time_point deadline, To
     }
 }
 
-/// The groups of a launch's queries get places of their own, in the order they are met.
-void place_groups(CudaEngine::Parts& parts, std::size_t count,
-                  std::span<const GroupWork> groups) noexcept {
-    const auto place_of = [&parts, groups](std::uint16_t group) {
-        AXG_ASSERT(group < groups.size());
-        std::uint16_t& place = parts.place_of_group[group];
+/// The groups of a launch get places of their own, in the order they are met.
+class GroupPlaces {
+  public:
+    GroupPlaces(CudaEngine::Parts& parts, std::span<const GroupWork> groups) noexcept
+        : parts_(parts), groups_(groups) {
+        parts_.groups_here.clear();
+    }
+    GroupPlaces(const GroupPlaces&) = delete;
+    GroupPlaces& operator=(const GroupPlaces&) = delete;
+    ~GroupPlaces() {
+        for (const std::uint16_t group : parts_.groups_here) {
+            parts_.place_of_group[group] = kNoGroup;
+        }
+    }
+    [[nodiscard]] std::uint16_t of(std::uint16_t group) noexcept {
+        if (groups_.empty()) {
+            return group;
+        }
+        AXG_ASSERT(group < groups_.size());
+        std::uint16_t& place = parts_.place_of_group[group];
         if (place == kNoGroup) {
-            place = static_cast<std::uint16_t>(parts.groups_here.size());
-            parts.groups_in[place] = sums_of(groups[group], parts.sequence);
-            parts.groups_here.push_back(group);
+            place = static_cast<std::uint16_t>(parts_.groups_here.size());
+            parts_.groups_in[place] = sums_of(groups_[group], parts_.sequence);
+            parts_.groups_here.push_back(group);
         }
         return place;
-    };
-    for (std::size_t i = 0;
-         parts.head->parts != 0 && i <= (parts.head->parts - 1) >> parts.head->depth; ++i) {
-        parts.roots[i].group = place_of(parts.roots[i].group);
     }
-    for (Query& query : std::span(parts.queries, count)) {
-        query.group = place_of(query.group);
+
+  private:
+    CudaEngine::Parts& parts_;
+    std::span<const GroupWork> groups_;
+};
+
+/// Each block of parts gets the roots that its parts are of, and the tree of the first.
+void place_parts(CudaEngine::Parts& parts, const PartQueries& asked, GroupPlaces& places) noexcept {
+    for (std::uint32_t i = 0; i < asked.roots.size(); ++i) {
+        TreeRoot root = asked.roots[i];
+        root.group = places.of(root.group);
+        const std::uint32_t first = i << asked.depth, last = first + (1U << asked.depth) - 1;
+        for (std::uint32_t b = first / kPartsOfBlock; b <= last / kPartsOfBlock; ++b) {
+            PartBlock& block = parts.part_blocks[b];
+            const std::uint32_t place = i - (b * kPartsOfBlock >> asked.depth);
+            block.roots[place] = root;
+            if (place == 0) {
+                block.tree = asked.trees[root.tree];
+            }
+        }
     }
-    for (const std::uint16_t group : parts.groups_here) {
-        parts.place_of_group[group] = kNoGroup;
-    }
+    // Of blocks with more trees.
+    std::copy(asked.trees.begin(), asked.trees.end(), parts.query_trees);
 }
 
 /// The touching pairs of one query into its list, in the order of their ids.
@@ -114,28 +142,28 @@ struct Asked {
     std::span<const Query> queries;
 };
 
-/// Into pinned memory, and the number of the batch last. Returns its graph.
+/// Into pinned memory. Returns the batch's graph.
 const BatchGraph& place_batch(CudaEngine::Parts& parts, const Asked& asked,
                               std::span<const GroupWork> groups) noexcept {
     const auto part_count = static_cast<std::uint32_t>(asked.parts.count());
     const auto query_count = static_cast<std::uint32_t>(asked.queries.size());
     bool measures = false, has_rechecks = false;
-    for (std::size_t i = 0; i < asked.queries.size(); ++i) {
-        const Query& query = parts.queries[i] = asked.queries[i];
-        measures = measures || query.kind == QueryKind::clearance;
-        has_rechecks = has_rechecks || !query.is_float_only || query.kind != QueryKind::farther;
+    ++parts.sequence;
+    {
+        GroupPlaces places(parts, groups);
+        place_parts(parts, asked.parts, places);
+        for (std::size_t i = 0; i < asked.queries.size(); ++i) {
+            Query& query = parts.queries[i] = asked.queries[i];
+            query.group = places.of(query.group);
+            measures = measures || query.kind == QueryKind::clearance;
+            has_rechecks = has_rechecks || !query.is_float_only || query.kind != QueryKind::farther;
+        }
     }
-    std::copy(asked.parts.trees.begin(), asked.parts.trees.end(), parts.query_trees);
-    std::copy(asked.parts.roots.begin(), asked.parts.roots.end(), parts.roots);
-    parts.groups_here.clear();
-    *parts.head = {.sequence = ++parts.sequence,
+    *parts.head = {.sequence = parts.sequence,
                    .count = part_count + query_count,
+                   .groups = static_cast<std::uint32_t>(parts.groups_here.size()),
                    .parts = part_count,
                    .depth = asked.parts.depth};
-    if (!groups.empty()) {
-        place_groups(parts, query_count, groups);
-    }
-    parts.head->groups = static_cast<std::uint32_t>(parts.groups_here.size());
     std::memset(static_cast<void*>(parts.results), kPoison,
                 (part_count + query_count) * sizeof(DeviceResult));
     std::memset(static_cast<void*>(parts.groups_out), kPoison,
@@ -161,6 +189,7 @@ bool run_batch(CudaEngine::Parts& parts, const Asked& asked, std::span<QueryResu
     }
     const std::size_t first = results.size() - asked.queries.size();
     for (std::size_t i = 0; i < results.size(); ++i) {
+        __builtin_prefetch(parts.results + std::min(i + kAhead, results.size() - 1));
         if (!wait_for(parts.results[i], sequence, deadline, results[i])) {
             parts.give_up("an answer of the GPU did not come whole in time");
             return false;
@@ -249,8 +278,8 @@ void CudaEngine::run(const PartQueries& parts, std::span<const Query> queries,
                      std::span<QueryResult> results, std::span<GroupWork> groups) noexcept {
     const std::size_t count = parts.count();
     AXG_ASSERT(count + queries.size() == results.size() && results.size() <= parts_max() &&
-               parts.trees.size() <= kQueryTreesMax && parts.depth <= kTreeDepthOfParts &&
-               groups.size() <= kGroupsMax);
+               parts.trees.size() <= kQueryTreesMax && parts.depth >= 1 &&
+               parts.depth <= kTreeDepthOfParts && groups.size() <= kGroupsMax);
     if (!begin(results) || parts_->fault != nullptr) {
         return;
     }

@@ -104,6 +104,18 @@ inline constexpr std::uint32_t kNoLimit = 0xffffffffU;
 /// Where all of a batch are looked at together: a stage's, the known-answer test's, whole warps.
 inline constexpr std::uint32_t kBatchQueriesMax = 544;
 
+/// Parts of boxes are posed so many at a time. Each such block finds what it needs in one place,
+/// so that the device can read it before it knows how much there is: the first tree and the roots.
+/// A root has two parts or more.
+inline constexpr std::uint32_t kPartsOfBlock = 32, kRootsOfBlock = kPartsOfBlock / 2;
+struct PartBlock {
+    QueryTree tree;
+    TreeRoot roots[kRootsOfBlock];
+};
+[[nodiscard]] AXG_HD constexpr std::uint32_t part_blocks(std::uint32_t queries) noexcept {
+    return (queries + kPartsOfBlock - 1) / kPartsOfBlock;
+}
+
 /// Pinned, written by the host before a batch.
 struct BatchHead {
     std::uint32_t sequence = 0, count = 0;
@@ -186,7 +198,7 @@ struct DeviceBuffers {
     const BatchHead* head = nullptr;
     const Query* queries = nullptr;
     const QueryTree* query_trees = nullptr;  // [kQueryTreesMax]
-    const TreeRoot* roots = nullptr;         // [queries]
+    const PartBlock* part_blocks = nullptr;  // [part_blocks(queries)]
     DeviceResult* results = nullptr;
     TriangleIds* listed = nullptr;            // [queries][listed], touching pairs
     const GroupSums* groups_in = nullptr;     // [queries]

@@ -63,7 +63,7 @@ struct CudaEngine::Parts {
     cuda::BatchHead* head = nullptr;
     Query* queries = nullptr;
     QueryTree* query_trees = nullptr;
-    TreeRoot* roots = nullptr;
+    cuda::PartBlock* part_blocks = nullptr;
     cuda::DeviceResult* results = nullptr;
     TriangleIds* listed = nullptr;
     GroupSums* groups_in = nullptr;

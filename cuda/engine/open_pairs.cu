@@ -143,12 +143,45 @@ __device__ std::uint32_t count_rows(const DeviceBuffers& buffers, std::uint32_t 
     return threadIdx.x == 0 && more != 0 ? atomicAdd(&buffers.counters->box_rows, more) + more : 0;
 }
 
-/// Children of each against the other's own box: a warp the children of b, another those of a. The
-/// other two meanwhile read and move what the rows need, a lane a child.
+/// What rows need of a child of each body, a lane a child.
+__device__ void read_children_of_b(const PreparedQuery& q, const Opened& o, Rows& rows) {
+    const unsigned lane = lane_of_thread();
+    const bool is_child = lane < o.b.count;
+    const TreeNode* const child = q.b.nodes + o.b.first_child + (is_child ? lane : 0);
+    const std::uint32_t leaf = child->leaf, more = child->more;
+    const ChildBox own = child_box(o.a, lane);
+    rows.of[lane].moved = moved_box(q.c.a_in_b, own.c, own.h);
+    rows.more_b[lane] = more;
+    const std::uint32_t leaves = ballot(is_child && leaf != kNoLeaf);
+    if (lane == 0) {
+        rows.leaves_b = leaves;
+    }
+}
+__device__ void read_children_of_a(const PreparedQuery& q, const Opened& o, Rows& rows) {
+    const unsigned lane = lane_of_thread();
+    if (lane >= o.a.count) {
+        return;
+    }
+    const TreeNode& child = q.a.nodes[o.a.first_child + lane];
+    Row& row = rows.of[lane];
+    row.leaf = child.leaf;
+    row.more = child.more;
+    if (is_leaf(child)) {
+        const Moved own = moved_box(q.c.a_in_b, child.box.c, child.box.h);
+        for (int k = 0; k < 3; ++k) {
+            row.centre[k] = child.box.c[k];
+            row.origin[k] = own.c[k];
+            row.shift[k] = moved_centre(q.pose, k, child.box.c, own.c[k]);
+        }
+    }
+}
+
+/// Children of each against the other's own box, a warp the children of b and another those of a;
+/// and what the rows need of them.
 __device__ void look_at_children(const PreparedQuery& q, const Opened& o, Shared& shared) {
     const unsigned lane = lane_of_thread(), warp = threadIdx.x / kWarp;
     Rows& rows = shared.both;
-    if (warp < 2) {  // warp 0: children of b against a's box; warp 1: the other way round
+    if (warp < 2) {
         const TreeNode& node = warp == 0 ? o.b : o.a;
         const Aabb& box = warp == 0 ? o.a.box : o.b.box;
         const Frame& frame = warp == 0 ? q.c.a_in_b : q.c.b_in_a;
@@ -161,30 +194,11 @@ __device__ void look_at_children(const PreparedQuery& q, const Opened& o, Shared
         if (warp == 1 && near) {
             rows.child[rank_in(bits)] = static_cast<std::uint8_t>(lane);
         }
-    } else if (warp == 2) {
-        const bool is_child = lane < o.b.count;
-        const TreeNode* const child = q.b.nodes + o.b.first_child + (is_child ? lane : 0);
-        const std::uint32_t leaf = child->leaf, more = child->more;
-        const ChildBox own = child_box(o.a, lane);
-        rows.of[lane].moved = moved_box(q.c.a_in_b, own.c, own.h);
-        rows.more_b[lane] = more;
-        const std::uint32_t leaves = ballot(is_child && leaf != kNoLeaf);
-        if (lane == 0) {
-            rows.leaves_b = leaves;
-        }
-    } else if (lane < o.a.count) {
-        const TreeNode& child = q.a.nodes[o.a.first_child + lane];
-        Row& row = rows.of[lane];
-        row.leaf = child.leaf;
-        row.more = child.more;
-        if (is_leaf(child)) {
-            const Moved own = moved_box(q.c.a_in_b, child.box.c, child.box.h);
-            for (int k = 0; k < 3; ++k) {
-                row.centre[k] = child.box.c[k];
-                row.origin[k] = own.c[k];
-                row.shift[k] = moved_centre(q.pose, k, child.box.c, own.c[k]);
-            }
-        }
+    }
+    if (warp == kWarps - 2) {
+        read_children_of_b(q, o, rows);
+    } else if (warp == kWarps - 1) {
+        read_children_of_a(q, o, rows);
     }
 }
 

@@ -10,7 +10,7 @@
 namespace axg::cuda {
 namespace {
 
-constexpr unsigned kThreads = 64;  // queries a block
+constexpr unsigned kThreads = 64;
 static_assert(kThreads == kSumThreads);
 
 /// Whether the engine can run it at all; if so, `prepared` holds what it takes.
@@ -77,13 +77,17 @@ __device__ void sum_trees(const TreeSums& sums, std::uint32_t block, std::uint32
     }
 }
 
-/// Shares of a stage's groups, from pinned memory.
+/// Shares of a stage's groups, from pinned memory: the first ones before it is known how many.
 __device__ void copy_groups(const DeviceBuffers& b) {
     constexpr std::uint32_t kWords = sizeof(GroupSums) / sizeof(uint4);
-    const std::uint32_t count = min(b.head->groups, b.limits.queries) * kWords;
     const uint4* const from = reinterpret_cast<const uint4*>(b.groups_in);
     uint4* const to = reinterpret_cast<uint4*>(b.groups);
-    for (std::uint32_t i = threadIdx.x; i < count; i += kThreads) {
+    const uint4 first = from[min(threadIdx.x, b.limits.queries * kWords - 1)];
+    const std::uint32_t count = min(b.head->groups, b.limits.queries) * kWords;
+    if (threadIdx.x < count) {
+        to[threadIdx.x] = first;
+    }
+    for (std::uint32_t i = kThreads + threadIdx.x; i < count; i += kThreads) {
         to[i] = from[i];
     }
 }
@@ -101,14 +105,8 @@ __device__ void start_counters(const DeviceBuffers& b, const BatchHead& head) {
     *b.counters = counters;
 }
 
-/// Blocks that queries take; behind them are those of the sums, and one of the groups.
-[[nodiscard]] AXG_HD unsigned query_blocks(const DeviceLimits& limits) {
-    return (limits.queries + kThreads - 1) / kThreads;
-}
-
-/// Whether this block is one of those, and did its work.
-__device__ bool did_other_work(const DeviceBuffers& b) {
-    const unsigned own = query_blocks(b.limits);
+/// Whether this block is one behind the `own` first ones, and did its work: the sums, the groups.
+__device__ bool did_other_work(const DeviceBuffers& b, unsigned own) {
     if (blockIdx.x < own) {
         return false;
     }

@@ -1,99 +1,168 @@
 // SPDX-License-Identifier: Apache-2.0
 // First kernel of a batch about parts of boxes: the numbers that they have in common from pinned
 // memory, and each part's query from those. Queries of other kinds come behind the parts.
+#include <cstddef>
+
 #include "cuda/engine/prepare.cuh"
 
 namespace axg::cuda {
 namespace {
 
-constexpr std::uint32_t kTreesHere = 3;  // at a time
-constexpr unsigned kTreeWords = kTreesHere * sizeof(QueryTree) / sizeof(uint4);
+constexpr unsigned kParts = kPartsOfBlock;  // each is posed by a thread of either warp
+static_assert(kParts == kWarp && kThreads == 2 * kWarp);
+// Read before it is known how many there are: the bus takes a microsecond, whatever is read.
+constexpr std::uint32_t kRootsAtOnce = 4, kQueriesAtOnce = 2;
+constexpr unsigned kTreeWords = sizeof(QueryTree) / sizeof(uint4);
 constexpr unsigned kRootWords = sizeof(TreeRoot) / sizeof(uint4);
+constexpr unsigned kQueryWords = kQueriesAtOnce * sizeof(Query) / sizeof(uint4);
 static_assert(sizeof(QueryTree) % sizeof(uint4) == 0 && sizeof(TreeRoot) % sizeof(uint4) == 0);
+constexpr unsigned kWordsAtOnce = kTreeWords + kRootsAtOnce * kRootWords;
+static_assert(offsetof(PartBlock, roots) == sizeof(QueryTree));
 
 struct Shared {
-    uint4 trees[kTreeWords];
-    uint4 roots[kThreads * kRootWords];
+    uint4 trees[kRootsOfBlock * kTreeWords];
+    uint4 roots[kRootsOfBlock * kRootWords];
+    uint4 queries[kQueryWords];  // the first ones behind the parts
+    double left[12][kParts];     // the numbers of a pose each
 };
 
-/// Some trees from the `first` on: all loads at once, for the bus takes a microsecond for each.
-__device__ void load_trees(const DeviceBuffers& b, std::uint32_t first, Shared& shared) {
-    constexpr unsigned kEach = (kTreeWords + kThreads - 1) / kThreads;
-    const uint4* const from =
-        reinterpret_cast<const uint4*>(b.query_trees + min(first, kQueryTreesMax - kTreesHere));
+/// This block's first tree and first roots: all loads at once.
+__device__ void load_first(const DeviceBuffers& b, Shared& shared) {
+    const uint4* const from = reinterpret_cast<const uint4*>(
+        b.part_blocks + min(blockIdx.x, part_blocks(b.limits.queries) - 1));
+    constexpr unsigned kEach = (kWordsAtOnce + kThreads - 1) / kThreads;
     uint4 loaded[kEach];
 #pragma unroll
     for (unsigned i = 0; i < kEach; ++i) {
-        loaded[i] = from[min(i * kThreads + threadIdx.x, kTreeWords - 1)];
+        loaded[i] = from[min(i * kThreads + threadIdx.x, kWordsAtOnce - 1)];
     }
 #pragma unroll
     for (unsigned i = 0; i < kEach; ++i) {
-        shared.trees[min(i * kThreads + threadIdx.x, kTreeWords - 1)] = loaded[i];
+        const unsigned word = min(i * kThreads + threadIdx.x, kWordsAtOnce - 1);
+        (word < kTreeWords ? shared.trees[word] : shared.roots[word - kTreeWords]) = loaded[i];
     }
 }
 
-/// Roots of this block's parts.
-__device__ void load_roots(const DeviceBuffers& b, std::uint32_t first, std::uint32_t count,
-                           Shared& shared) {
-    const uint4* const from = reinterpret_cast<const uint4*>(b.roots + first);
+/// The other roots of this block.
+__device__ void load_roots(const DeviceBuffers& b, std::uint32_t roots, Shared& shared) {
+    const uint4* const from = reinterpret_cast<const uint4*>(b.part_blocks[blockIdx.x].roots);
+    const unsigned first = kRootsAtOnce * kRootWords + threadIdx.x;
+    for (unsigned word = first; word < roots * kRootWords; word += kThreads) {
+        shared.roots[word] = from[word];
+    }
+}
+
+/// Trees from this one on, as many as a block can have.
+__device__ void load_trees(const DeviceBuffers& b, std::uint32_t first, Shared& shared) {
+    constexpr unsigned kWords = kRootsOfBlock * kTreeWords, kAtOnce = 8;
+    const uint4* const from = reinterpret_cast<const uint4*>(b.query_trees + first);
+    for (unsigned word = threadIdx.x; word < kWords; word += kAtOnce * kThreads) {
+        uint4 loaded[kAtOnce];
 #pragma unroll
-    for (unsigned i = 0; i < kRootWords; ++i) {
-        const unsigned word = i * kThreads + threadIdx.x;
-        if (word < count * kRootWords) {
-            shared.roots[word] = from[word];
+        for (unsigned i = 0; i < kAtOnce; ++i) {
+            loaded[i] = from[min(word + i * kThreads, kWords - 1)];
+        }
+#pragma unroll
+        for (unsigned i = 0; i < kAtOnce; ++i) {
+            shared.trees[min(word + i * kThreads, kWords - 1)] = loaded[i];
         }
     }
 }
 
-/// The part that this thread has, once its tree is there. Called by whole blocks.
+/// The first ones behind the parts, which this block may have.
+__device__ void load_queries(const DeviceBuffers& b, Shared& shared) {
+    static_assert(kQueryWords <= kThreads);
+    if (threadIdx.x < kQueryWords) {
+        shared.queries[threadIdx.x] = reinterpret_cast<const uint4*>(b.queries)[threadIdx.x];
+    }
+}
+
+/// A pose is a product of two halves: the second warp makes the left ones, and the first one the
+/// right ones, and starts the queries. Called by whole blocks.
+/// @param is_part  this thread has one
+__device__ void pose_and_start(const DeviceBuffers& b, const Part& part, bool is_part,
+                               std::uint32_t index, std::uint32_t sequence, Shared& shared) {
+    const auto sines = [](double angle_rad) { return sin_cos(angle_rad); };
+    const PoseProduct product = product_of(part.tree);
+    const bool is_left = threadIdx.x >= kWarp;
+    Pose half;
+    if (is_part) {
+        const std::uint32_t begin = is_left ? product.split : 0;
+        const std::uint32_t end = is_left ? product.count : product.split;
+        half = stretch_of(product, begin, end, part, sines);
+    }
+    if (is_part && is_left) {
+        if (product.split != product.count) {
+            half = compose(product.fixed[product.count], half);
+        }
+        for (int i = 0; i < 12; ++i) {
+            shared.left[i][lane_of_thread()] = i < 9 ? half.r[i / 3][i % 3] : half.t[i - 9];
+        }
+    }
+    __syncthreads();
+    if (is_part && !is_left) {
+        Query query{};
+        const bool is_far = fill_query(part, query);
+        query.pose = half;
+        if (product.count != 0) {
+            Pose left;
+            for (int i = 0; i < 12; ++i) {
+                const double number = shared.left[i][lane_of_thread()];
+                (i < 9 ? left.r[i / 3][i % 3] : left.t[i - 9]) = number;
+            }
+            query.pose = compose(left, half);
+        }
+        start(b, index, query, is_far, sequence);
+    }
+}
+
+/// This block's parts. Called by whole blocks, once the first trees and roots are there.
 __device__ void start_parts(const DeviceBuffers& b, const BatchHead& head, std::uint32_t first,
                             std::uint32_t parts, Shared& shared) {
-    const std::uint32_t depth = min(head.depth, kTreeDepthOfParts);
-    const std::uint32_t first_root = first >> depth;
-    const std::uint32_t roots = ((min(first + kThreads, parts) - 1) >> depth) - first_root + 1;
-    load_roots(b, first_root, roots, shared);
-    __syncthreads();
     const TreeRoot* const here = reinterpret_cast<const TreeRoot*>(shared.roots);
     const QueryTree* const trees = reinterpret_cast<const QueryTree*>(shared.trees);
-    const std::uint32_t index = first + threadIdx.x;
-    const TreeRoot& root = here[min((index >> depth) - first_root, roots - 1)];
-    const std::uint32_t last_tree = min(here[roots - 1].tree, kQueryTreesMax - 1U);
-    std::uint32_t loaded = 0;  // the first trees are there
-    for (;;) {
-        const std::uint32_t place = min(root.tree, kQueryTreesMax - 1U) - loaded;
-        if (index < parts && place < kTreesHere) {
-            Query query{};
-            const bool is_far =
-                part_query(trees[place], root, depth, index & ((1U << depth) - 1), query);
-            start(b, index, query, is_far, head.sequence);
-        }
-        if (last_tree < loaded + kTreesHere) {
-            return;
-        }
-        loaded =
-            min(max(loaded + kTreesHere, std::uint32_t{here[0].tree}), kQueryTreesMax - kTreesHere);
-        __syncthreads();
-        load_trees(b, loaded, shared);
+    const std::uint32_t depth = min(max(head.depth, 1U), kTreeDepthOfParts);
+    const std::uint32_t first_root = first >> depth;
+    const std::uint32_t roots = ((min(first + kParts, parts) - 1) >> depth) - first_root + 1;
+    if (roots > kRootsAtOnce) {
+        load_roots(b, min(roots, kRootsOfBlock), shared);
         __syncthreads();
     }
+    std::uint32_t first_tree = min(std::uint32_t{here[0].tree}, kQueryTreesMax - 1);
+    if (here[roots - 1].tree != here[0].tree) {  // else the one that it is is there
+        first_tree = min(first_tree, kQueryTreesMax - kRootsOfBlock);
+        __syncthreads();
+        load_trees(b, first_tree, shared);
+        __syncthreads();
+    }
+    const std::uint32_t index = first + lane_of_thread();
+    const TreeRoot& root = here[min((index >> depth) - first_root, roots - 1)];
+    const QueryTree& tree = trees[min(root.tree - first_tree, kRootsOfBlock - 1)];
+    pose_and_start(b, {tree, root, depth, index & ((1U << depth) - 1)}, index < parts, index,
+                   head.sequence, shared);
 }
 
 __global__ void __launch_bounds__(kThreads, 8)
     prepare_parts_kernel(const __grid_constant__ DeviceBuffers b) {
     wait_for_kernel_before();
     __shared__ Shared shared;
-    if (did_other_work(b)) {
+    if (did_other_work(b, part_blocks(b.limits.queries))) {
         return;
     }
-    load_trees(b, 0, shared);  // mostly there are no more
     const BatchHead head = *b.head;
+    load_queries(b, shared);
+    load_first(b, shared);
+    __syncthreads();
     const std::uint32_t count = min(head.count, b.limits.queries), parts = min(head.parts, count);
-    const std::uint32_t first = blockIdx.x * kThreads, index = first + threadIdx.x;
+    const std::uint32_t first = blockIdx.x * kParts, index = first + threadIdx.x;
     if (first < parts) {
         start_parts(b, head, first, parts, shared);
     }
-    if (index >= parts && index < count) {
-        start(b, index, b.queries[index - parts], false, head.sequence);
+    if (threadIdx.x < kParts && index >= parts && index < count) {
+        const std::uint32_t place = index - parts;
+        const Query* const here = reinterpret_cast<const Query*>(shared.queries);
+        start(b, index, place < kQueriesAtOnce ? here[place] : b.queries[place], false,
+              head.sequence);
     }
     if (blockIdx.x == 0 && threadIdx.x == 0) {
         start_counters(b, head);
@@ -103,7 +172,7 @@ __global__ void __launch_bounds__(kThreads, 8)
 }  // namespace
 
 cudaError_t launch_prepare_parts(const DeviceBuffers& buffers, const Launch& launch) noexcept {
-    const unsigned blocks = query_blocks(buffers.limits) + kSumBlocks + 1;
+    const unsigned blocks = part_blocks(buffers.limits.queries) + kSumBlocks + 1;
     return launch_kernel(prepare_parts_kernel, blocks, kThreads, launch, buffers);
 }
 

@@ -7,13 +7,18 @@ namespace {
 
 static_assert(sizeof(Query) % sizeof(uint4) == 0);
 
+/// A thread a query.
+[[nodiscard]] AXG_HD unsigned query_blocks(const DeviceLimits& limits) {
+    return (limits.queries + kThreads - 1) / kThreads;
+}
+
 __global__ void __launch_bounds__(kThreads, 8)
     prepare_queries_kernel(const __grid_constant__ DeviceBuffers b) {
     wait_for_kernel_before();
     // Through shared memory, so that the bus sees whole lines.
     constexpr unsigned kWords = kThreads * sizeof(Query) / sizeof(uint4);
     __shared__ uint4 words[kWords];
-    if (did_other_work(b)) {
+    if (did_other_work(b, query_blocks(b.limits))) {
         return;
     }
     const std::uint32_t first = blockIdx.x * kThreads;

@@ -40,7 +40,7 @@ struct Batch {
     std::vector<Query> queries{kBatch};
     std::vector<QueryResult> wanted{kBatch}, found{kBatch};
     bool is_stage = false;
-    std::vector<QueryTree> trees{};  // one a query, posed by the GPU
+    std::vector<QueryTree> trees{};  // posed by the GPU: one for two queries that are the same
     std::vector<TreeRoot> roots{};
 
     void draw(test::Draw& draw, std::uint32_t mesh_count, CpuEngine& cpu,
@@ -57,8 +57,8 @@ struct Batch {
         is_stage = is_float || kind == BatchKind::stages;
         trees.clear();
         roots.clear();
-        for (std::size_t i = 0; kind == BatchKind::parts && i < queries.size(); ++i) {
-            const Query& q = queries[i];
+        for (std::size_t i = 0; kind == BatchKind::parts && i < queries.size() / 2; ++i) {
+            const Query& q = queries[2 * i + 1] = queries[2 * i];
             QueryTree& tree = trees.emplace_back();
             tree.is_float_only = true;
             tree.r_mm = q.r_mm;

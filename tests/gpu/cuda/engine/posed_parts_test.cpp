@@ -37,7 +37,7 @@ struct Parts {
         for (std::uint32_t i = 0; i < asked().count(); ++i) {
             const TreeRoot& root = roots[i >> depth];
             Query query;
-            if (part_query(trees[root.tree], root, depth, i & ((1U << depth) - 1), query)) {
+            if (part_query({trees[root.tree], root, depth, i & ((1U << depth) - 1)}, query)) {
                 query.pose = {};
                 query.pose.t[0] = 1e5;
                 query.r_mm = 0;
@@ -83,7 +83,7 @@ QueryTree random_tree(test::Draw& draw, std::uint32_t depth, bool may_be_apart) 
 
 Parts random_parts(test::Draw& draw, std::uint32_t meshes) {
     Parts out;
-    out.depth = draw.below(8);
+    out.depth = 1 + draw.below(7);
     const bool may_be_apart = draw.below(3) == 0;
     const std::uint32_t behind = draw.below(4);
     const std::uint32_t most = (kQueriesMax - behind) >> out.depth;

@@ -63,8 +63,8 @@ struct HashEngine {
         for (std::uint32_t i = 0; i < parts.count(); ++i) {
             const TreeRoot& root = parts.roots[i >> parts.depth];
             Query query;
-            const bool is_far = part_query(parts.trees[root.tree], root, parts.depth,
-                                           (i ^ own.turned) & mask, query);
+            const bool is_far = part_query(
+                {parts.trees[root.tree], root, parts.depth, (i ^ own.turned) & mask}, query);
             results[i] = own.judge(query);
             if (is_far) {
                 results[i] = {.status = QueryStatus::ok, .proof = Proof::far};
