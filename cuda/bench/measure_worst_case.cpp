@@ -102,9 +102,95 @@ class Hog {
 constexpr std::uint32_t kAmple = 1U << 30U;
 constexpr std::size_t kNoLayout = kWorstCaseLayouts.size();
 
+/// A batch's queries as parts of boxes that the engine has most work to pose: with as many joints
+/// as there can be. The parts of a root are of two kinds of bodies at most: the first ones lie in
+/// the travel of pruned surfaces. Nothing moves, so every pose is what the batch was made for.
+struct PosedBatch {
+    std::vector<QueryTree> trees;
+    std::vector<TreeRoot> roots;
+    std::vector<Query> queries;  // behind the parts
+    std::uint32_t depth = 1;
+
+    PosedBatch() = default;
+    /// @param roots_max, trees_max  of a call of the guard; of more kinds of bodies there are more
+    PosedBatch(const WorstCaseBatch& batch, std::uint32_t roots_max, std::uint32_t trees_max) {
+        std::vector<Query> sorted = batch.queries;
+        std::stable_sort(sorted.begin(), sorted.end(),
+                         [](const Query& a, const Query& b) { return a.mesh_a < b.mesh_a; });
+        const std::size_t parts = sorted.size() - kKnownAnswers;
+        while (depth < kTreeDepthOfParts && parts >> depth > roots_max &&
+               fits(sorted, parts, depth + 1)) {
+            ++depth;
+        }
+        const std::size_t each = std::size_t{1} << depth, count = parts >> depth;
+        trees.assign(std::min<std::size_t>(trees_max, std::min<std::size_t>(count, kQueryTreesMax)),
+                     tree_of(sorted.front(), depth));
+        for (std::size_t i = 0; i < count; ++i) {
+            roots.push_back(root_of({sorted.data() + i * each, each}));
+            roots.back().tree = static_cast<std::uint16_t>(i * trees.size() / count);
+        }
+        queries.assign(sorted.begin() + static_cast<std::ptrdiff_t>(count * each), sorted.end());
+    }
+
+  private:
+    static constexpr std::size_t kKnownAnswers = 2;
+    static constexpr double kPartMm = 2;  // from one part to the next
+
+    /// Whether no root has more than two kinds of bodies.
+    static bool fits(const std::vector<Query>& sorted, std::size_t parts, std::uint32_t depth) {
+        const std::size_t each = std::size_t{1} << depth;
+        bool fit = true;
+        for (std::size_t first = 0; first + each <= parts; first += each) {
+            std::size_t kinds = 1;
+            for (std::size_t i = first + 1; i < first + each; ++i) {
+                kinds += sorted[i].mesh_a != sorted[i - 1].mesh_a ? 1 : 0;
+            }
+            fit = fit && kinds <= 2;
+        }
+        return fit;
+    }
+    /// All cuts go along the first joint, which moves nothing; the others turn by nothing.
+    static QueryTree tree_of(const Query& query, std::uint32_t depth) {
+        QueryTree tree;
+        tree.is_float_only = true;
+        tree.may_be_pruned = true;
+        tree.joints = kTreeJointsMax;
+        tree.split = kTreeJointsMax / 2;
+        tree.r_mm = query.r_mm;
+        for (PathJoint& joint : tree.joint) {
+            joint.is_linear = false;
+        }
+        tree.joint[0] = {{0, 0, 0}, {}, 1, true};
+        tree.cut[0] = {0, -1e5, 0, (1U << depth) - 1};
+        for (TreeCut& cut : std::span(tree.cut).subspan(1)) {
+            cut = {0, -1, 1};
+        }
+        for (std::uint32_t level = 0; level < depth; ++level) {
+            tree.quarter[level] = 0.5 * kPartMm * static_cast<double>(1U << (depth - 1 - level));
+        }
+        return tree;
+    }
+    /// Parts up to where the kind changes lie at 0 or below.
+    static TreeRoot root_of(std::span<const Query> parts) {
+        const auto changes = [&parts](const Query& q) { return q.mesh_a != parts[0].mesh_a; };
+        const auto first = std::find_if(parts.begin(), parts.end(), changes) - parts.begin();
+        const Query& other = parts.back();
+        TreeRoot root;
+        root.pruned_a = parts[0].mesh_a;
+        root.pruned_b = parts[0].mesh_b;
+        root.mesh_a = other.mesh_a;
+        root.mesh_b = other.mesh_b;
+        // Part p lies at centre + kPartMm (p + 1/2 - n/2).
+        const double middle = 0.5 * static_cast<double>(parts.size());
+        root.centre[0] = kPartMm * (middle - static_cast<double>(first));
+        return root;
+    }
+};
+
 /// A call in one layout, ready to be run.
 struct Filled {
     WorstCaseBatch batch;
+    PosedBatch posed;                     // empty where the host poses
     std::vector<GroupWork> groups, work;  // as the call begins with them, and as it left them
     std::vector<QueryResult> results;
 };
@@ -166,6 +252,9 @@ class Fillings {
                     return fault;
                 }
                 append(bodies, filled.batch);
+                if (call.roots_max != 0) {
+                    filled.posed = PosedBatch(filled.batch, call.roots_max, call.trees_max);
+                }
                 filled.groups = groups_of(call, layout);
                 filled.work = filled.groups;
                 filled.results.resize(queries);
@@ -194,7 +283,13 @@ class Fillings {
 
 void run(CudaEngine& engine, Filled& filled) {
     std::copy(filled.groups.begin(), filled.groups.end(), filled.work.begin());
-    engine.run(filled.batch.queries, filled.results, filled.work);
+    const PosedBatch& posed = filled.posed;
+    if (posed.roots.empty()) {
+        engine.run(filled.batch.queries, filled.results, filled.work);
+    } else {
+        engine.run({posed.trees, posed.roots, posed.depth}, posed.queries, filled.results,
+                   filled.work);
+    }
 }
 
 /// The batch did what it was made for: an exact layout fills every list, an overflowing one leaves

@@ -20,7 +20,9 @@ struct WorstCaseCall {
     Capacities capacities{};      // with the lists of the call as those of a batch
     std::uint32_t queries = 512;  // in one launch: at most CudaOptions::queries_max
     bool is_stage = false;        // they are in a group, whose work is charged
-    std::uint32_t times = 1;      // one behind the other
+    // And parts of so many boxes and tasks, which the engine poses, in float; 0: the host poses.
+    std::uint32_t roots_max = 0, trees_max = 0;
+    std::uint32_t times = 1;  // one behind the other
 };
 
 /// What a cycle may come to, and how often to measure it.

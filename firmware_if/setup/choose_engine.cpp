@@ -58,11 +58,17 @@ bool is_admitted(const LoadedMachine& loaded, const CudaEngine& gpu, const Cycle
         out.refusal = EngineRefusal::no_gpu;
         return false;
     }
-    out.longest_us = measured->us_max;
-    out.words =
-        fmt::format("{}: longest cycle ({} launches) {:.0f} us, limit {:.0f} us (deadline {} us)",
-                    name_of(measured->device), launches_of(measured->cycle), out.longest_us,
-                    demand.times.engine_us, demand.times.deadline_us);
+    const std::optional<double> host_us = host_share_us(loaded, demand, out.words);
+    if (!host_us) {
+        out.refusal = EngineRefusal::unfit;
+        return false;
+    }
+    out.longest_us = measured->us_max + *host_us;
+    out.words = fmt::format(
+        "{}: longest cycle ({} launches{}) {:.0f} us, limit {:.0f} us (deadline {} us)",
+        name_of(measured->device), launches_of(measured->cycle),
+        *host_us == 0 ? "" : fmt::format(" {:.0f} us, host {:.0f} us", measured->us_max, *host_us),
+        out.longest_us, demand.times.engine_us, demand.times.deadline_us);
     if (out.longest_us <= demand.times.engine_us) {
         return true;
     }
@@ -96,10 +102,14 @@ CycleDemand cycle_demand(const Machine& machine, bool is_stoppable) noexcept {
         return {.times = times};
     }
     const std::uint32_t tasks = stop_tasks(machine);
-    return {.plan = cycle_plan(machine, tasks),
+    const CyclePlan plan = cycle_plan(machine, tasks);
+    return {.plan = plan,
             .tasks = tasks,
             .asks_twice = tries_longer(machine.can.permit_samples),
             .has_jogs = machine.guard.jog.is_promised,
+            // Pieces of a look-ahead path are posed by the host.
+            .poses_parts = machine.can.look_ahead_samples == 0 && plan.form == TreeForm::leaves &&
+                           lists_of(plan).rechecks == 0,
             .times = times};
 }
 

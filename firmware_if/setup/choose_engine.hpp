@@ -38,6 +38,7 @@ struct CycleDemand {
     std::uint32_t tasks = 0;          // pairs, each with one tool
     bool asks_twice = false;          // the first stage has a query for a longer permit besides
     bool has_jogs = false;
+    bool poses_parts = false;  // an engine that poses parts of boxes is always let to
     TimeLimits times{};
 };
 [[nodiscard]] CycleDemand cycle_demand(const Machine& machine, bool is_stoppable) noexcept;

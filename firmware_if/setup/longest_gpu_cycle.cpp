@@ -7,6 +7,7 @@
 #include "core/certificate/jog.hpp"
 #include "core/certificate/pair_queries.hpp"
 #include "core/worst_case/worst_case_batch.hpp"
+#include "firmware_if/setup/measure_cycle.hpp"
 
 namespace axg {
 namespace {
@@ -39,9 +40,16 @@ class CycleMaker {
     CycleMaker(const Capacities& capacities, std::uint32_t tree_levels) : capacities_(capacities) {
         cycle_.tree_levels = tree_levels;
     }
-    CycleMaker& stage(const WorkLists& lists, std::uint32_t queries) {
+    /// @param roots_max, trees_max  WorstCaseCall's
+    CycleMaker& stage(const WorkLists& lists, std::uint32_t queries, std::uint32_t roots_max = 0,
+                      std::uint32_t trees_max = 0) {
         const std::uint32_t most = std::min(queries, kMost);
-        return add(capacities_of(capacities_, lists, most, cycle_.tree_levels), queries, true);
+        add(capacities_of(capacities_, lists, most, cycle_.tree_levels), queries, true);
+        if (queries <= kMost) {
+            cycle_.calls.back().roots_max = roots_max;
+            cycle_.calls.back().trees_max = trees_max;
+        }
+        return *this;
     }
     CycleMaker& add(const Capacities& capacities, std::uint32_t queries, bool is_stage) {
         cycle_.calls.push_back({.capacities = capacities,
@@ -79,7 +87,9 @@ std::vector<WorstCaseCycle> longest_gpu_cycles(const Capacities& capacities,
     proof.stage(may_fill_twice ? twice(plan.lists[0]) : plan.lists[0],
                 (demand.asks_twice ? 2 : 1) * demand.tasks + kKnownAnswers);
     for (std::uint32_t stage = 1; stage < plan.stages; ++stage) {
-        proof.stage(plan.lists[stage], plan.queries[stage] + kKnownAnswers);
+        const std::uint32_t open = stage == 1 ? demand.tasks : plan.queries[stage - 1];
+        proof.stage(plan.lists[stage], plan.queries[stage] + kKnownAnswers,
+                    demand.poses_parts ? open : 0, demand.tasks);
     }
     std::vector<WorstCaseCycle> cycles{proof.take()};
     if (demand.has_jogs) {
@@ -109,6 +119,11 @@ std::optional<WorstCaseMeasurement> measure_slowest(const CudaOptions& options,
         }
     }
     return slowest;
+}
+
+std::optional<double> host_share_us(const LoadedMachine& loaded, const CycleDemand& demand,
+                                    std::string& fault) {
+    return demand.plan ? measure_host_us(loaded, *demand.plan, demand.poses_parts, fault) : 0.0;
 }
 
 }  // namespace axg

@@ -27,4 +27,9 @@ namespace axg {
     const CudaOptions& options, std::vector<WorstCaseCycle> cycles, std::uint32_t count,
     std::string& fault);
 
+/// What the host does in such a cycle beside the launches; 0 in contact mode, where it poses each
+/// pair once. Empty, with `fault` set: as measure_host_us.
+[[nodiscard]] std::optional<double> host_share_us(const LoadedMachine& loaded,
+                                                  const CycleDemand& demand, std::string& fault);
+
 }  // namespace axg

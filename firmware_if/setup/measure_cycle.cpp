@@ -12,6 +12,7 @@
 #include "core/certificate/stop_certificate.hpp"
 #include "core/collision/containment.hpp"
 #include "core/guard/monitor.hpp"
+#include "cuda/engine/cuda_engine.hpp"
 #include "firmware_if/setup/cold_caches.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
 #include "firmware_if/setup/travel_sample.hpp"
@@ -20,6 +21,7 @@ namespace axg {
 namespace {
 
 constexpr std::uint32_t kPositions = 64;
+constexpr std::uint32_t kBatchMax = CudaOptions{}.queries_max;
 constexpr double kFullSpeed = 0.9;  // of what an axis may do: rounding makes no faster one
 
 double us_of(clockid_t clock) noexcept {
@@ -37,6 +39,20 @@ Engine idle_engine(bool& is_far) noexcept {
                   QueryResult{.status = QueryStatus::ok, .proof = proof});
     };
     return {.self = &is_far, .run = run};
+}
+
+/// The same, of an engine on a GPU.
+Engine idle_gpu(bool& is_far, bool poses_parts) noexcept {
+    Engine out = idle_engine(is_far);
+    out.prefers_batches = true;
+    if (poses_parts) {
+        out.parts_max = kBatchMax;
+        out.run_parts = [](void*, const PartQueries&, std::span<const Query>,
+                           std::span<QueryResult> results, std::span<GroupWork>) noexcept {
+            std::fill(results.begin(), results.end(), QueryResult{.status = QueryStatus::ok});
+        };
+    }
+    return out;
 }
 
 /// Boxes that never end: of axes at full speed, in a machine of which nothing is known beforehand.
@@ -127,6 +143,19 @@ CycleTime least_of(const CycleTime& a, const CycleTime& b) noexcept {
     return {std::min(a.wall_us, b.wall_us), std::min(a.cpu_us, b.cpu_us)};
 }
 
+/// As the condition says of the caches.
+void prepare(CacheCondition condition, ColdCaches& caches,
+             std::span<const std::byte> trees) noexcept {
+    if (condition == CacheCondition::warm) {
+        return;
+    }
+    caches.write_through();
+    ColdCaches::flush(trees);
+    if (condition != CacheCondition::cold) {
+        ColdCaches::flush_code();
+    }
+}
+
 /// Every repeat begins with what the condition says of the caches.
 class Repeats {
   public:
@@ -142,7 +171,7 @@ class Repeats {
             CycleTime least{1e12, 1e12};
             for (std::uint32_t i = 0; i < kCycleRepeats; ++i) {
                 chain_.forget();
-                prepare(condition);
+                prepare(condition, caches_, cycle_.trees());
                 cycle_.begin();
                 const CycleTime took = chain_.run(cycle_.engine());
                 line.wall_us.push_back(took.wall_us);
@@ -155,17 +184,6 @@ class Repeats {
     }
 
   private:
-    void prepare(CacheCondition condition) noexcept {
-        if (condition == CacheCondition::warm) {
-            return;
-        }
-        caches_.write_through();
-        ColdCaches::flush(cycle_.trees());
-        if (condition != CacheCondition::cold) {
-            ColdCaches::flush_code();
-        }
-    }
-
     Chain& chain_;
     LongestCycle& cycle_;
     ColdCaches& caches_;
@@ -218,6 +236,38 @@ std::string measure_shape(const CycleShape& shape, const Machine& machine,
 const char* name_of(CacheCondition condition) noexcept {
     constexpr const char* kNames[] = {"warm", "cold", "cold code", "with a memory copy running"};
     return kNames[static_cast<unsigned>(condition)];
+}
+
+std::optional<double> measure_host_us(const LoadedMachine& loaded, const CyclePlan& plan,
+                                      bool poses_parts, std::string& fault) {
+    const LoadedMachine measured = endless(loaded);
+    const std::optional<CpuEngine> engine = make_engine(measured);
+    const std::optional<ContainmentTest> test =
+        engine ? make_containment_test(measured, *engine) : std::nullopt;
+    std::optional<StopCertificate> certificate = make_stop_certificate(measured, plan);
+    if (!test || !certificate) {
+        fault = !engine ? kNoLaneSet : !test ? kNoMemoryForContainment : kNoMemoryForProofs;
+        return std::nullopt;
+    }
+    Chain chain(measured.machine, *certificate, *test);
+    look_at_most_rays(chain);
+    ColdCaches caches;
+    double longest_us = 0;
+    for (const CacheCondition condition : kCacheConditions) {
+        std::optional<MemoryCopier> copier;
+        if (condition == CacheCondition::beside_copier) {
+            copier.emplace();
+        }
+        double least_us = 1e12;
+        for (std::uint32_t i = 0; i < kCycleRepeats; ++i) {
+            chain.forget();
+            prepare(condition, caches, {});
+            bool is_far = false;
+            least_us = std::min(least_us, chain.run(idle_gpu(is_far, poses_parts)).wall_us);
+        }
+        longest_us = std::max(longest_us, least_us);
+    }
+    return longest_us;
 }
 
 std::optional<CycleMeasurement> measure_cycle(const LoadedMachine& loaded, const CyclePlan& plan,

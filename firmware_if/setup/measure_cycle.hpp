@@ -59,6 +59,14 @@ struct CycleMeasurement {
     [[nodiscard]] double longest_us() const noexcept { return lines[longest].least.wall_us; }
 };
 
+/// What the host does in a cycle over an engine on a GPU, which answers at once and proves nothing:
+/// from snapshot to decision, the longest of all conditions. Its own launches are not in it. Empty,
+/// with `fault` set: no memory.
+/// @param poses_parts  as Engine::run_parts; else the host poses every box
+[[nodiscard]] std::optional<double> measure_host_us(const LoadedMachine& loaded,
+                                                    const CyclePlan& plan, bool poses_parts,
+                                                    std::string& fault);
+
 /// Empty, with `fault` set: no such lanes, no memory, lists that do not go together, or a machine
 /// whose boxes end before the plan does.
 /// @param loaded  whose guard is stoppable; of its travel proofs nothing is used

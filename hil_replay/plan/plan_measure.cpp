@@ -248,13 +248,13 @@ bool measure_longest(const LoadedMachine& loaded, const ModelScene& scene, const
                      ModelMeasurement& out, std::string& fault) {
     CudaOptions options;
     options.multiprocessors = scene.multiprocessors;
-    const auto worst_case =
-        measure_slowest(options,
-                        longest_gpu_cycles(loaded.machine.capacities,
-                                           cycle_demand(loaded.machine, true), gpu.tree_levels()),
-                        kWorstCaseCycles, fault);
-    out.longest_us = worst_case ? worst_case->us_max : 0;
-    return worst_case.has_value();
+    const CycleDemand demand = cycle_demand(loaded.machine, true);
+    const auto worst_case = measure_slowest(
+        options, longest_gpu_cycles(loaded.machine.capacities, demand, gpu.tree_levels()),
+        kWorstCaseCycles, fault);
+    const std::optional<double> host_us = host_share_us(loaded, demand, fault);
+    out.longest_us = worst_case && host_us ? worst_case->us_max + *host_us : 0;
+    return worst_case && host_us;
 }
 
 }  // namespace

@@ -88,6 +88,27 @@ TEST(CudaWorstCase, IsMeasuredAndDoesTheWorkItWasMadeFor) {
     }
 }
 
+// Parts that the engine poses do the work that the batch was made for, else it is refused.
+TEST(CudaWorstCase, IsMeasuredWithPartsThatTheEnginePoses) {
+    for (const std::uint32_t roots : {1U, 8U, 32U, 256U}) {
+        WorstCaseCycle cycle = batch_cycle(Capacities{});
+        WorstCaseCall& call = cycle.calls[0];
+        call.capacities.batch.rechecks = 0;
+        call.queries = 514;
+        call.is_stage = true;
+        call.roots_max = roots;
+        call.trees_max = 8;
+        cycle.count = 9;
+        std::string fault;
+        const auto measured = measure_worst_case(batch_options(), cycle, fault);
+        if (!measured && fault.find("bug") == std::string::npos) {
+            GTEST_SKIP() << fault;
+        }
+        ASSERT_TRUE(measured) << fault;
+        std::printf("%u roots: slowest %.1f us\n", roots, measured->us_max);
+    }
+}
+
 /// Queries that are many, deep in contact, all of one pair, or of wide margins.
 void draw_bad(test::Draw& draw, std::uint32_t mesh_count, std::vector<Query>& queries) {
     const std::uint32_t kind = draw.below(5);

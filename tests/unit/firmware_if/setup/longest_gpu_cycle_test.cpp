@@ -133,6 +133,33 @@ TEST_F(LongestGpuCycle, MoreQueriesThanALaunchTakesAreMoreLaunches) {
     EXPECT_EQ(made.calls[1].queries, CudaOptions{}.queries_max);
 }
 
+// Boxes of the later stages are posed by the engine, unless a path is announced: its pieces are the
+// host's.
+TEST_F(LongestGpuCycle, TheEnginePosesTheLaterStages) {
+    const CyclePlan plan = *cycle_demand(loaded_.machine, true).plan;
+    ASSERT_EQ(plan.stages, 3U);
+    const std::uint32_t tasks = stop_tasks(loaded_.machine);
+    const std::vector<WorstCaseCall> calls = cycles(true)[0].calls;
+    EXPECT_EQ(calls[0].roots_max, 0U);
+    EXPECT_EQ(calls[1].roots_max, tasks);
+    EXPECT_EQ(calls[2].roots_max, plan.queries[1]);
+    EXPECT_EQ(calls[2].trees_max, tasks);
+    loaded_.machine.can.look_ahead_samples = 8;
+    for (const WorstCaseCall& call : cycles(true)[0].calls) {
+        EXPECT_EQ(call.roots_max, 0U);
+    }
+}
+
+// No launch has what the host does between them: an admission adds it.
+TEST_F(LongestGpuCycle, TheHostsShareIsMeasured) {
+    std::string fault;
+    const std::optional<double> share =
+        host_share_us(loaded_, cycle_demand(loaded_.machine, true), fault);
+    ASSERT_TRUE(share) << fault;
+    EXPECT_GT(*share, 0);
+    EXPECT_EQ(host_share_us(loaded_, cycle_demand(loaded_.machine, false), fault), 0.0);
+}
+
 // Each call can be constructed, in every layout.
 TEST_F(LongestGpuCycle, EveryCallCanBeFilled) {
     loaded_.machine.guard.jog.is_promised = true;
