@@ -274,7 +274,9 @@ void warm_up(CudaEngine& engine) {
     const QueryTree tree{};
     const TreeRoot root;
     QueryResult both[2];
-    engine.run(PartQueries{{&tree, 1}, {&root, 1}}, {}, both, {&group, 1});
+    if (engine.parts_max() >= std::size(both)) {
+        engine.run(PartQueries{{&tree, 1}, {&root, 1}}, {}, both, {&group, 1});
+    }
     query.is_float_only = false;
     query.kind = QueryKind::clearance;
     engine.run({&query, 1}, {&result, 1});

@@ -17,11 +17,13 @@ LAUNCH_US = 11.3
 DOUBLE_CYCLES = 32 / 2 - 32 / 64
 CONVERSION_CYCLES = 32 / 2 - 32 / 16
 # What each kernel has an entry of: lists of gpu-double.json.
-ENTRIES = {"recheck_pairs": "rechecks", "test_leaves": "leaf_pairs", "open_pairs": "box_rows",
-           "prepare_queries": "queries"}
+ENTRIES = {"recheck_pairs": "rechecks", "test_leaves": "leaf_pairs", "open_pairs": "node_pairs",
+           "prepare_queries": "queries", "prepare_parts": "parts"}
+LANE_A_THREAD = ("queries", "parts")  # of the others a warp has one
 # Name, multiprocessors of the partition that stands for it, MHz.
 BOARDS = [("Orin Nano 8 GB", 8, 625), ("Orin Nano 8 GB, Super", 8, 1020),
           ("Orin NX 16 GB", 8, 918), ("AGX Orin 64 GB", 16, 1300), ("Thor T5000", 16, 1575)]
+LONGEST = "longest cycle, default plan"
 # What is queried, its record, the command without its partition, launches.
 WORK = [
     ("one pose, eight pairs", "gpu-cycles.json", "bench scene --engine cuda --sms {} --cycles *",
@@ -34,8 +36,7 @@ WORK = [
      "bench --paper * --sms {}", 1),
     ("longest batch, one level", "gpu-longest.json", "bench --fill --levels 1 --sms {} --cycles *",
      1),
-    ("longest cycle, nine launches", "gpu-longest.json",
-     "bench --fill --launches 9 --levels 1 --sms {} --cycles *", 9),
+    (LONGEST, "gpu-plan.json", "bench --worst-case --engine cuda --stages 3 --sms {} *", 3),
 ]
 
 
@@ -61,7 +62,7 @@ def double_us(instructions, lists, multiprocessors, board_mhz):
     """What double arithmetic of full lists takes longer than it did."""
     cycles = 0
     for kernel, entries in ENTRIES.items():
-        count = lists[entries] / (32 if entries == "queries" else 1)
+        count = lists[entries] / (32 if entries in LANE_A_THREAD else 1)
         double, conversions = instructions[kernel]
         cycles += count * (double * DOUBLE_CYCLES + conversions * CONVERSION_CYCLES)
     return cycles / multiprocessors / board_mhz

@@ -65,7 +65,7 @@ std::string first_difference(const Decisions& x, const Decisions& y) {
 /// A call of the engine, and how many there were.
 struct Counted {
     Engine engine;
-    std::uint64_t calls = 0;
+    std::uint64_t calls = 0, calls_of_parts = 0;
 
     static Engine over(Counted& counted) {
         Engine out = counted.engine;
@@ -81,6 +81,13 @@ struct Counted {
             auto& own = *static_cast<Counted*>(self);
             ++own.calls;
             own.engine(queries, results, groups);
+        };
+        out.run_parts = [](void* self, const PartQueries& parts, std::span<const Query> queries,
+                           std::span<QueryResult> results, std::span<GroupWork> groups) noexcept {
+            auto& own = *static_cast<Counted*>(self);
+            ++own.calls;
+            ++own.calls_of_parts;
+            own.engine.run_parts(own.engine.self, parts, queries, results, groups);
         };
         return out;
     }
@@ -156,6 +163,9 @@ TEST_F(CudaGuardChain, DecidesWhatItDecidesOverTheCpu) {
             EXPECT_TRUE(eager.samples == found.samples) << first_difference(eager, found);
             EXPECT_TRUE(cpu.without_work() == found.without_work()) << first_difference(cpu, found);
             EXPECT_GT(cpu.permits, 30'000U);
+            EXPECT_TRUE(!is_stoppable || program != test::kDemoProgram ||
+                        counted.calls_of_parts != 0)
+                << "near contact the engine poses";
             if (!is_stoppable) {
                 EXPECT_EQ(counted.calls, found.samples.size() + 1)
                     << "a sample is one batch, and the self-test";
