@@ -14,7 +14,7 @@ namespace axg {
 
 namespace {
 
-constexpr std::uint32_t kAhead = 12;        // items that are written before a place of theirs is
+constexpr std::uint32_t kAhead = 12;  // items that are written before a place of theirs is
 
 void add(WorkLists& sum, const WorkLists& more) noexcept {
     sum.node_pairs += more.node_pairs;
@@ -159,6 +159,13 @@ void StagedProver::judge_known_answer(const Engine& engine, std::uint32_t count,
     note(near.status);
 }
 
+/// False: the engine is lost, and nothing that it said in this cycle counts.
+bool StagedProver::end_call(std::uint32_t queries, StagedWork& work) noexcept {
+    ++work.calls;
+    work.queries += queries;
+    return lost_ == QueryStatus::ok;
+}
+
 /// What was asked. False: the engine is lost, and nothing that it said in this cycle counts.
 bool StagedProver::run(const Engine& engine, StagedWork& work) noexcept {
     const auto all = static_cast<std::uint32_t>(query_count_ + add_known_answer().size());
@@ -173,10 +180,7 @@ bool StagedProver::run(const Engine& engine, StagedWork& work) noexcept {
         node.may_be_split = may_help_to_split(result.status, queries_[i].r_mm);
         note(result.status);
     }
-    ++work.calls;
-    work.queries += query_count_;
-    query_count_ = 0;
-    return lost_ == QueryStatus::ok;
+    return end_call(std::exchange(query_count_, 0), work);
 }
 
 /// The leaves of trees of this depth below the nodes that there are, if the engine poses them
@@ -234,9 +238,7 @@ bool StagedProver::run_parts(const Engine& engine, std::span<const JointBoxTask>
         last = may_be_split ? node_count_ : last;
         nodes_[node_count_++] = {root, result.status, true, false, may_be_split};
     }
-    ++work.calls;
-    work.queries += count;
-    return lost_ == QueryStatus::ok;
+    return end_call(count, work);
 }
 
 /// Trees of this depth below the nodes that there are.

@@ -68,6 +68,7 @@ class StagedProver {
     [[nodiscard]] std::span<Query> add_known_answer() noexcept;
     void judge_known_answer(const Engine& engine, std::uint32_t count, StagedWork& work) noexcept;
     void note(QueryStatus status) noexcept;
+    [[nodiscard]] bool end_call(std::uint32_t queries, StagedWork& work) noexcept;
     [[nodiscard]] bool run(const Engine& engine, StagedWork& work) noexcept;
     [[nodiscard]] bool plan_parts(const Engine& engine, std::span<const JointBoxTask> tasks,
                                   std::uint32_t depth) noexcept;

@@ -2,7 +2,7 @@
 // Queries about the parts of boxes that were all cut alike, as few numbers: where a part's centre
 // lies follows from its place among them, and its pose from that. An engine on a GPU poses them
 // itself; the lines are the same on both sides, so the queries are, bit by bit.
-// Source: docs/theory/certificate.md, "Parts posed by the engine".
+// Source: docs/theory/certificate.md, "Levers once".
 #pragma once
 
 #include <cstdint>

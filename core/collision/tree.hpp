@@ -117,4 +117,11 @@ struct Tree {
     std::span<const LeafCorners> corners{};  // [leaves], or none: then all vertices are moved
 };
 
+/// Bodies as trees, for an engine whose bodies need not come from meshes.
+struct TreeBodies {
+    std::vector<TreeData> trees;
+    std::vector<float> reach_mm;    // largest |coordinate| of each
+    std::uint32_t tree_levels = 1;  // of pairs of nodes that two of them may take to open
+};
+
 }  // namespace axg

@@ -18,7 +18,7 @@
 #include "core/base/arena.hpp"
 #include "core/collision/cpu_engine.hpp"
 #include "core/collision/engine.hpp"
-#include "core/collision/tree_bodies.hpp"
+#include "core/collision/tree.hpp"
 #include "core/machine/cycle_work.hpp"
 
 namespace axg {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/collision/tree_bodies.hpp"
+#include "core/collision/tree.hpp"
 #include "core/machine/cycle_work.hpp"
 #include "core/worst_case/longest_cycle.hpp"
 #include "core/worst_case/tree_maker.hpp"

@@ -13,7 +13,7 @@
 
 #include "core/base/limits.hpp"
 #include "core/collision/engine.hpp"
-#include "core/collision/tree_bodies.hpp"
+#include "core/collision/tree.hpp"
 #include "core/machine/machine.hpp"
 
 namespace axg {

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "core/collision/tree.hpp"
-#include "core/collision/tree_bodies.hpp"
 #include "cuda/engine/cuda_engine.hpp"
 #include "cuda/engine/device_data.hpp"
 #include "cuda/engine/kernels.hpp"

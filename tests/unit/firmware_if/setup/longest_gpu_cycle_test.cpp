@@ -145,7 +145,8 @@ TEST_F(LongestGpuCycle, TheEnginePosesTheLaterStages) {
     EXPECT_EQ(calls[2].roots_max, plan.queries[1]);
     EXPECT_EQ(calls[2].trees_max, tasks);
     loaded_.machine.can.look_ahead_samples = 8;
-    for (const WorstCaseCall& call : cycles(true)[0].calls) {
+    const std::vector<WorstCaseCall> with_path = cycles(true)[0].calls;
+    for (const WorstCaseCall& call : with_path) {
         EXPECT_EQ(call.roots_max, 0U);
     }
 }
