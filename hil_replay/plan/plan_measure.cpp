@@ -58,17 +58,27 @@ struct WatchedEngine {
                                 std::span<GroupWork> groups) noexcept {
                 auto& watched = *static_cast<WatchedEngine*>(self);
                 watched.engine(queries, results, groups);
-                watched.note(queries, results);
+                watched.note(results);
+            };
+        }
+        if (engine.run_parts != nullptr) {
+            out.parts_max = engine.parts_max;
+            out.run_parts = [](void* self, const PartQueries& parts, std::span<const Query> queries,
+                               std::span<QueryResult> results,
+                               std::span<GroupWork> groups) noexcept {
+                auto& watched = *static_cast<WatchedEngine*>(self);
+                watched.engine.run_parts(watched.engine.self, parts, queries, results, groups);
+                watched.note(results);
             };
         }
         return out;
     }
     void run(std::span<const Query> queries, std::span<QueryResult> results) noexcept {
         engine(queries, results);
-        note(queries, results);
+        note(results);
     }
-    void note(std::span<const Query> queries, std::span<const QueryResult> results) noexcept {
-        work.queries = std::max(work.queries, static_cast<std::uint32_t>(queries.size()));
+    void note(std::span<const QueryResult> results) noexcept {
+        work.queries = std::max(work.queries, static_cast<std::uint32_t>(results.size()));
         for (const QueryResult& result : results) {
             work.node_pairs = std::max(work.node_pairs, result.node_pairs);
             work.triangle_pairs = std::max(work.triangle_pairs, result.triangle_pairs);
