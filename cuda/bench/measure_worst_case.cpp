@@ -155,7 +155,7 @@ struct PosedBatch {
         tree.is_float_only = true;
         tree.may_be_pruned = true;
         tree.joints = kTreeJointsMax;
-        tree.split = kTreeJointsMax / 2;
+        tree.split = kTreeJointsMax - 1;  // one thread has nearly all
         tree.r_mm = query.r_mm;
         for (PathJoint& joint : tree.joint) {
             joint.is_linear = false;

@@ -279,7 +279,9 @@ void CudaEngine::run(const PartQueries& parts, std::span<const Query> queries,
     const std::size_t count = parts.count();
     AXG_ASSERT(count + queries.size() == results.size() && results.size() <= parts_max() &&
                parts.trees.size() <= kQueryTreesMax && parts.depth >= 1 &&
-               parts.depth <= kTreeDepthOfParts && groups.size() <= kGroupsMax);
+               parts.depth <= kTreeDepthOfParts && !groups.empty() && groups.size() <= kGroupsMax);
+    AXG_ASSERT(std::all_of(queries.begin(), queries.end(),
+                           [](const Query& q) { return q.is_float_only; }));
     if (!begin(results) || parts_->fault != nullptr) {
         return;
     }

@@ -78,6 +78,20 @@ bool is_admitted(const LoadedMachine& loaded, const CudaEngine& gpu, const Cycle
     return false;
 }
 
+/// Whether an engine on a GPU poses whatever may be open: the later stages in one launch each, of
+/// no more pairs and joints than it has room for, and no pieces of a look-ahead path.
+bool poses_parts(const Machine& machine, const CyclePlan& plan, std::uint32_t tasks) {
+    bool fits = machine.can.look_ahead_samples == 0 && plan.form == TreeForm::leaves &&
+                lists_of(plan).rechecks == 0 && tasks <= kQueryTreesMax;
+    for (std::uint32_t stage = 1; stage < plan.stages; ++stage) {
+        fits = fits && plan.queries[stage] + 2 <= CudaOptions{}.queries_max;
+    }
+    for (const Pair& pair : machine.pairs) {
+        fits = fits && path_between(machine, pair.a, pair.b).count <= kTreeJointsMax;
+    }
+    return fits;
+}
+
 }  // namespace
 
 std::string name_of(const CudaDevice& device) {
@@ -107,9 +121,7 @@ CycleDemand cycle_demand(const Machine& machine, bool is_stoppable) noexcept {
             .tasks = tasks,
             .asks_twice = tries_longer(machine.can.permit_samples),
             .has_jogs = machine.guard.jog.is_promised,
-            // Pieces of a look-ahead path are posed by the host.
-            .poses_parts = machine.can.look_ahead_samples == 0 && plan.form == TreeForm::leaves &&
-                           lists_of(plan).rechecks == 0,
+            .poses_parts = poses_parts(machine, plan, tasks),
             .times = times};
 }
 

@@ -59,9 +59,9 @@ struct CycleMeasurement {
     [[nodiscard]] double longest_us() const noexcept { return lines[longest].least.wall_us; }
 };
 
-/// What the host does in a cycle over an engine on a GPU, which answers at once and proves nothing:
-/// from snapshot to decision, the longest of all conditions. Its own launches are not in it. Empty,
-/// with `fault` set: no memory.
+/// What the host does in a cycle over an engine on a GPU that answers at once: from snapshot to
+/// decision, the longest of all conditions, numbers of open pairs, and stages in which they are
+/// proven. Its own launches are not in it. Empty, with `fault` set: no memory.
 /// @param poses_parts  as Engine::run_parts; else the host poses every box
 [[nodiscard]] std::optional<double> measure_host_us(const LoadedMachine& loaded,
                                                     const CyclePlan& plan, bool poses_parts,
