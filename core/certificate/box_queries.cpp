@@ -33,6 +33,13 @@ const JointBox& grid_of(const JointBoxTask& task, std::uint32_t grid) noexcept {
     return grid == kNoIndex ? task.box : task.pieces[grid];
 }
 
+/// A box has room for many axes, and a machine has few: to copy all would take half the time of
+/// posing.
+void copy_box(const Machine& machine, const JointBox& from, JointBox& to) noexcept {
+    std::copy_n(from.centre.begin(), machine.axes.size(), to.centre.begin());
+    std::copy_n(from.half.begin(), machine.axes.size(), to.half.begin());
+}
+
 }  // namespace
 
 BoxQueries::BoxQueries(const Machine& machine, std::size_t tasks, bool are_float_only,
@@ -222,8 +229,7 @@ void BoxQueries::make_part(const JointBoxTask& task, const BoxItem& root, const 
     out.piece = kNoIndex;
     out.grid = root.grid;
     out.cut = root.cut;
-    std::copy_n(root.box.centre.begin(), machine_->axes.size(), out.box.centre.begin());
-    std::copy_n(root.box.half.begin(), machine_->axes.size(), out.box.half.begin());
+    copy_box(*machine_, root.box, out.box);
     for (std::uint32_t level = 0; level < depth; ++level) {
         const bool is_upper = (part >> (depth - 1 - level) & 1U) != 0;
         axg::halve(out.box, plan.axes[level], is_upper, grid_of(task, root.grid));
@@ -239,11 +245,7 @@ void BoxQueries::halve(const JointBoxTask& task, const BoxItem& item, bool is_up
     out.piece = is_cut ? 2 * item.piece + (is_upper ? 2U : 1U) : kNoIndex;
     out.grid = item.piece != kNoIndex && !is_cut ? item.piece : item.grid;
     out.cut = is_cut ? 0 : item.cut | 1U << item.widest_axis;
-    // A box has room for many axes, and a machine has few: to copy all would take half the time of
-    // posing.
-    const JointBox& from = is_cut ? task.pieces[out.piece] : item.box;
-    std::copy_n(from.centre.begin(), machine_->axes.size(), out.box.centre.begin());
-    std::copy_n(from.half.begin(), machine_->axes.size(), out.box.half.begin());
+    copy_box(*machine_, is_cut ? task.pieces[out.piece] : item.box, out.box);
     if (!is_cut) {
         axg::halve(out.box, item.widest_axis, is_upper, grid_of(task, out.grid));
     }

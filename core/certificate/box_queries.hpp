@@ -52,7 +52,8 @@ class BoxQueries {
         std::uint32_t axes[kTreeDepthOfParts];  // that are cut along, level by level
         std::uint32_t widest_axis;              // of a part (BoxItem)
     };
-    /// False: the engine cannot, and nothing is planned.
+    /// Empty: of more trees or joints than an engine has room for, of pieces of a path, or of boxes
+    /// that cannot be cut so often.
     /// @param roots  each task's together
     /// @param trees, plans  [kQueryTreesMax] out
     /// @param out    [roots] which tree and where; the group is the caller's to say

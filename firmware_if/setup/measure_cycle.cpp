@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <memory>
 #include <span>
+#include <string_view>
 #include <utility>
 
 #include "core/certificate/pair_queries.hpp"
@@ -162,6 +163,33 @@ void look_at_most_rays(Chain& chain) {
     chain.forget();
 }
 
+/// A machine whose boxes never end, and the chain of its guard where rays cost most. Not moved: the
+/// parts refer to one another.
+struct MeasuredMachine {
+    LoadedMachine loaded;
+    std::optional<CpuEngine> engine;
+    std::optional<ContainmentTest> test;
+    std::optional<StopCertificate> certificate;
+    std::optional<Chain> chain;  // empty: `fault` says why
+
+    MeasuredMachine(const LoadedMachine& from, const CyclePlan& plan)
+        : loaded(endless(from)),
+          engine(make_engine(loaded)),
+          test(engine ? make_containment_test(loaded, *engine) : std::nullopt),
+          certificate(make_stop_certificate(loaded, plan)) {
+        if (test && certificate) {
+            chain.emplace(loaded.machine, *certificate, *test);
+            look_at_most_rays(*chain);
+        }
+    }
+    MeasuredMachine(const MeasuredMachine&) = delete;
+    MeasuredMachine& operator=(const MeasuredMachine&) = delete;
+
+    [[nodiscard]] std::string_view fault() const noexcept {
+        return !engine ? kNoLaneSet : !test ? kNoMemoryForContainment : kNoMemoryForProofs;
+    }
+};
+
 CycleTime least_of(const CycleTime& a, const CycleTime& b) noexcept {
     return {std::min(a.wall_us, b.wall_us), std::min(a.cpu_us, b.cpu_us)};
 }
@@ -263,17 +291,12 @@ const char* name_of(CacheCondition condition) noexcept {
 
 std::optional<double> measure_host_us(const LoadedMachine& loaded, const CyclePlan& plan,
                                       bool poses_parts, std::string& fault) {
-    const LoadedMachine measured = endless(loaded);
-    const std::optional<CpuEngine> engine = make_engine(measured);
-    const std::optional<ContainmentTest> test =
-        engine ? make_containment_test(measured, *engine) : std::nullopt;
-    std::optional<StopCertificate> certificate = make_stop_certificate(measured, plan);
-    if (!test || !certificate) {
-        fault = !engine ? kNoLaneSet : !test ? kNoMemoryForContainment : kNoMemoryForProofs;
+    MeasuredMachine measured(loaded, plan);
+    if (!measured.chain) {
+        fault = measured.fault();
         return std::nullopt;
     }
-    Chain chain(measured.machine, *certificate, *test);
-    look_at_most_rays(chain);
+    Chain& chain = *measured.chain;
     const auto least_us = [&](IdleGpu gpu, const auto& before) {
         double least = 1e12;
         for (std::uint32_t i = 0; i < kCycleRepeats; ++i) {
@@ -289,7 +312,7 @@ std::optional<double> measure_host_us(const LoadedMachine& loaded, const CyclePl
     double longest_us = 0;
     const std::uint32_t tasks = chain.tasks();
     for (const CycleShape& shape :
-         cycle_shapes(plan, tasks, tries_longer(measured.machine.can.permit_samples))) {
+         cycle_shapes(plan, tasks, tries_longer(measured.loaded.machine.can.permit_samples))) {
         for (const std::uint32_t far_from : {1U, plan.stages - 1, plan.stages}) {
             const IdleGpu gpu{.tasks = tasks, .open = shape.open, .far_from = far_from};
             const double us = least_us(gpu, [] {});
@@ -314,21 +337,16 @@ std::optional<double> measure_host_us(const LoadedMachine& loaded, const CyclePl
 std::optional<CycleMeasurement> measure_cycle(const LoadedMachine& loaded, const CyclePlan& plan,
                                               const CycleMeasureOptions& options,
                                               std::string& fault) {
-    const LoadedMachine measured = endless(loaded);
-    std::optional<CpuEngine> engine = make_engine(measured);
-    const std::optional<ContainmentTest> test =
-        engine ? make_containment_test(measured, *engine) : std::nullopt;
-    std::optional<StopCertificate> certificate = make_stop_certificate(measured, plan);
-    if (!test || !certificate) {
-        fault = !engine ? kNoLaneSet : !test ? kNoMemoryForContainment : kNoMemoryForProofs;
+    MeasuredMachine measured(loaded, plan);
+    if (!measured.chain) {
+        fault = measured.fault();
         return std::nullopt;
     }
-    Chain chain(measured.machine, *certificate, *test);
-    look_at_most_rays(chain);
+    Chain& chain = *measured.chain;
     CycleMeasurement out;
     out.plan = plan;
     out.tasks = chain.tasks();
-    out.memory_bytes = engine->memory().trees_bytes;
+    out.memory_bytes = measured.engine->memory().trees_bytes;
     out.posing = {1e12, 1e12};
     bool is_far = false;
     for (std::uint32_t i = 0; i < kCycleRepeats; ++i) {
@@ -341,9 +359,9 @@ std::optional<CycleMeasurement> measure_cycle(const LoadedMachine& loaded, const
     ColdCaches caches;
     for (const CycleShape& shape :
          options.shapes.empty()
-             ? all_shapes(plan, out.tasks, tries_longer(measured.machine.can.permit_samples))
+             ? all_shapes(plan, out.tasks, tries_longer(measured.loaded.machine.can.permit_samples))
              : options.shapes) {
-        fault = measure_shape(shape, measured.machine, options, chain, caches, out);
+        fault = measure_shape(shape, measured.loaded.machine, options, chain, caches, out);
         if (!fault.empty()) {
             return std::nullopt;
         }
