@@ -280,8 +280,9 @@ void CudaEngine::run(const PartQueries& parts, std::span<const Query> queries,
     AXG_ASSERT(count + queries.size() == results.size() && results.size() <= parts_max() &&
                parts.trees.size() <= kQueryTreesMax && parts.depth >= 1 &&
                parts.depth <= kTreeDepthOfParts && !groups.empty() && groups.size() <= kGroupsMax);
-    AXG_ASSERT(std::all_of(queries.begin(), queries.end(),
-                           [](const Query& q) { return q.is_float_only; }));
+    const auto is_of_float = [](const auto& asked) { return asked.is_float_only; };
+    AXG_ASSERT(std::all_of(queries.begin(), queries.end(), is_of_float) &&
+               std::all_of(parts.trees.begin(), parts.trees.end(), is_of_float));
     if (!begin(results) || parts_->fault != nullptr) {
         return;
     }

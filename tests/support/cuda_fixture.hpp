@@ -36,7 +36,9 @@ inline std::optional<CudaEngine> cuda_engine_over(const std::vector<Mesh>& meshe
     }
     options.multiprocessors = number_from("AXG_SMS", options.multiprocessors);
     options.deadline_us = number_from("AXG_DEADLINE_US", options.deadline_us);
-    return CudaEngine::create(pointers, capacities, options, fault);
+    std::optional<CudaEngine> made = CudaEngine::create(pointers, capacities, options, fault);
+    EXPECT_EQ(fault.find("warm-up"), std::string::npos) << "there is a GPU: " << fault;
+    return made;
 }
 
 }  // namespace axg::test

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "core/collision/known_answer.hpp"
 #include "core/collision/query_tree.hpp"
 #include "tests/support/cuda_fixture.hpp"
 #include "tests/support/engine_parity.hpp"
@@ -154,6 +155,13 @@ TEST(CudaPosedParts, GetTheResultsOfQueriesThatTheHostPosed) {
     EXPECT_GT(far, 0U);
     EXPECT_GT(near, 0U);
     EXPECT_GT(lost, 0U);
+}
+
+// Its first batches are about the first mesh against itself: a few triangles that touch fit into
+// every list, and are tested to the end.
+TEST(CudaPosedParts, AnEngineOverATetrahedronWarmsUp) {
+    AXG_CUDA_ENGINE_OR_SKIP(gpu, {known_answer_mesh()}, test::ample(), CudaOptions{});
+    EXPECT_EQ(gpu.fault(), nullptr);
 }
 
 }  // namespace
