@@ -415,9 +415,9 @@ StagedWork StagedProver::prove(const Engine& engine, std::span<const JointBoxTas
         std::fill_n(nodes_.begin(), open, Node{kNoIndex, QueryStatus::not_run, true, false, true});
         node_count_ = open;
         ++work.stages;
-        if (!(is_first
-                  ? run_first(engine, tasks, own, work)
-                  : run_stage(engine, tasks, results, depth, stage + 1 == plan_.stages, work))) {
+        const Engine here = engine.of_stage(stage);
+        if (!(is_first ? run_first(here, tasks, own, work)
+                       : run_stage(here, tasks, results, depth, stage + 1 == plan_.stages, work))) {
             for (JointBoxResult& result : results.first(tasks.size())) {
                 if (result.proof != JointBoxProof::bad_box) {
                     result.proof = JointBoxProof::engine_failed;

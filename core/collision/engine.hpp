@@ -130,6 +130,22 @@ struct Engine {
                       std::span<GroupWork> groups) noexcept = nullptr;
     std::uint32_t parts_max = 0;  // of a call, queries behind them included
 
+    // The first stages of a cycle, so many, may go to an engine on the host: they have few queries,
+    // and a launch costs more than those. Both engines give the same results, as said above.
+    struct Host {
+        std::uint32_t stages = 0;
+        void* self = nullptr;
+        void (*run_groups)(void* self, std::span<const Query> queries,
+                           std::span<QueryResult> results,
+                           std::span<GroupWork> groups) noexcept = nullptr;
+    } host{};
+
+    /// The engine that a stage of a cycle goes to.
+    [[nodiscard]] Engine of_stage(std::uint32_t stage) const noexcept {
+        return stage < host.stages ? Engine{.self = host.self, .run_groups = host.run_groups}
+                                   : *this;
+    }
+
     void operator()(std::span<const Query> queries, std::span<QueryResult> results) const noexcept {
         run(self, queries, results);
     }

@@ -18,17 +18,23 @@ namespace axg {
 /// Its name; of a partition, how much of it.
 [[nodiscard]] std::string name_of(const CudaDevice& device);
 
+/// An engine whose first stages another one on the host answers.
+[[nodiscard]] Engine with_host(Engine gpu, CpuEngine& cpu, std::uint32_t stages) noexcept;
+
 /// Why nothing may run.
 enum class EngineRefusal : std::uint8_t { none, no_gpu, unfit };
 
 struct ChosenEngine {
     std::optional<CudaEngine> gpu{};  // empty: the CPU engine answers
+    std::uint32_t host_stages = 0;    // of a plan: the CPU engine answers so many first ones
     std::string words{};              // what was measured and chosen, or why nothing may run
     double longest_us = 0;            // what the longest cycle took on the GPU; 0: not measured
     EngineRefusal refusal = EngineRefusal::none;
 
     [[nodiscard]] std::string gpu_name() const { return gpu ? name_of(gpu->device()) : ""; }
-    [[nodiscard]] Engine engine(CpuEngine& cpu) { return gpu ? gpu->engine() : cpu.engine(); }
+    [[nodiscard]] Engine engine(CpuEngine& cpu) {
+        return gpu ? with_host(gpu->engine(), cpu, host_stages) : cpu.engine();
+    }
 };
 
 /// What a cycle may query on a GPU, at most. Without a plan a call may fill all lists of the
@@ -38,10 +44,28 @@ struct CycleDemand {
     std::uint32_t tasks = 0;          // pairs, each with one tool
     bool asks_twice = false;          // the first stage has a query for a longer permit besides
     bool has_jogs = false;
-    bool poses_parts = false;  // an engine that poses parts of boxes is always let to
+    std::uint32_t host_stages = 0;  // stages that are not the GPU's
+    bool poses_parts = false;       // an engine that poses parts of boxes is always let to
     TimeLimits times{};
 };
 [[nodiscard]] CycleDemand cycle_demand(const Machine& machine, bool is_stoppable) noexcept;
+
+/// The longest cycle of a machine with an engine on a GPU, as it was measured.
+struct MeasuredGpuCycle {
+    CudaDevice device;
+    std::uint32_t launches = 0, host_stages = 0;
+    // The launches; the stages that the host answers; what it does besides, posing above all.
+    double launches_us = 0, host_stages_us = 0, host_us = 0;
+
+    [[nodiscard]] double us() const noexcept { return launches_us + host_stages_us + host_us; }
+};
+/// The host answers as many of the first stages as have few queries, or fewer where the longest
+/// cycle would not fit into the deadline. Empty, with `fault` set: as measure_worst_case.
+[[nodiscard]] std::optional<MeasuredGpuCycle> measure_gpu_cycle(const LoadedMachine& loaded,
+                                                                const CycleDemand& demand,
+                                                                std::uint32_t tree_levels,
+                                                                std::uint32_t multiprocessors,
+                                                                std::string& fault);
 
 /// cuda: the engine on a GPU, or a refusal. automatic: that engine if it is there, may run, and
 /// answers the checked pairs faster than `cpu` does, at positions spread over the travel.

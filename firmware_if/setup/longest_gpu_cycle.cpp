@@ -7,6 +7,7 @@
 #include "core/certificate/jog.hpp"
 #include "core/certificate/pair_queries.hpp"
 #include "core/worst_case/worst_case_batch.hpp"
+#include "firmware_if/setup/choose_plan.hpp"
 #include "firmware_if/setup/measure_cycle.hpp"
 
 namespace axg {
@@ -73,6 +74,11 @@ WorkLists twice(const WorkLists& lists) noexcept {
             2 * lists.triangle_pairs, 2 * lists.rechecks};
 }
 
+/// first_share_of, all groups together.
+WorkLists most_of_first(const CyclePlan& plan, bool asks_twice) noexcept {
+    return asks_twice && plan.stages > 1 ? twice(plan.lists[0]) : plan.lists[0];
+}
+
 }  // namespace
 
 std::vector<WorstCaseCycle> longest_gpu_cycles(const Capacities& capacities,
@@ -83,10 +89,11 @@ std::vector<WorstCaseCycle> longest_gpu_cycles(const Capacities& capacities,
     }
     const CyclePlan& plan = *demand.plan;
     CycleMaker proof(capacities, tree_levels);
-    const bool may_fill_twice = demand.asks_twice && plan.stages > 1;  // first_share_of
-    proof.stage(may_fill_twice ? twice(plan.lists[0]) : plan.lists[0],
-                (demand.asks_twice ? 2 : 1) * demand.tasks + kKnownAnswers);
-    for (std::uint32_t stage = 1; stage < plan.stages; ++stage) {
+    if (demand.host_stages == 0) {
+        proof.stage(most_of_first(plan, demand.asks_twice),
+                    (demand.asks_twice ? 2 : 1) * demand.tasks + kKnownAnswers);
+    }
+    for (std::uint32_t stage = std::max(demand.host_stages, 1U); stage < plan.stages; ++stage) {
         const std::uint32_t open = stage == 1 ? demand.tasks : plan.queries[stage - 1];
         proof.stage(plan.lists[stage], plan.queries[stage] + kKnownAnswers,
                     demand.poses_parts ? open : 0, demand.tasks);
@@ -119,6 +126,20 @@ std::optional<WorstCaseMeasurement> measure_slowest(const CudaOptions& options,
         }
     }
     return slowest;
+}
+
+std::optional<double> host_stages_us(const LoadedMachine& loaded, const CycleDemand& demand,
+                                     std::string& fault) {
+    if (demand.host_stages == 0) {
+        return 0.0;
+    }
+    CyclePlan plan = *demand.plan;
+    if (demand.host_stages == 1) {
+        plan.lists[0] = most_of_first(plan, demand.asks_twice);
+    }
+    plan.stages = demand.host_stages;
+    const std::optional<ChosenPlan> judged = judge_plan(loaded, plan, fault);
+    return judged ? std::optional(judged->longest_us - judged->posing_us) : std::nullopt;
 }
 
 std::optional<double> host_share_us(const LoadedMachine& loaded, const CycleDemand& demand,

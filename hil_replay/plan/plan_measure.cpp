@@ -11,10 +11,8 @@
 
 #include "core/certificate/motion_history.hpp"
 #include "core/certificate/pair_queries.hpp"
-#include "cuda/bench/measure_worst_case.hpp"
 #include "firmware_if/setup/choose_engine.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
-#include "firmware_if/setup/longest_gpu_cycle.hpp"
 #include "firmware_if/setup/travel_sample.hpp"
 #include "hil_replay/replay/replay_run.hpp"
 #include "hil_replay/trace/trace_base.hpp"
@@ -26,7 +24,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::uint32_t kHalvings = 24;
-constexpr std::uint32_t kWorstCaseCycles = 150;  // of each layout
 
 double us_since(Clock::time_point start) {
     return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
@@ -71,6 +68,14 @@ struct WatchedEngine {
                 watched.note(results);
             };
         }
+        out.host = {engine.host.stages, this,
+                    [](void* self, std::span<const Query> queries, std::span<QueryResult> results,
+                       std::span<GroupWork> groups) noexcept {
+                        auto& watched = *static_cast<WatchedEngine*>(self);
+                        const Engine::Host& host = watched.engine.host;
+                        host.run_groups(host.self, queries, results, groups);
+                        watched.note(results);
+                    }};
         return out;
     }
     void run(std::span<const Query> queries, std::span<QueryResult> results) noexcept {
@@ -253,20 +258,6 @@ bool measure_trace(LoadedMachine loaded, const ModelScene& scene, const Engine& 
     return true;
 }
 
-/// The constructed longest cycle of the machine's plan, as admission measures it.
-bool measure_longest(const LoadedMachine& loaded, const ModelScene& scene, const CudaEngine& gpu,
-                     ModelMeasurement& out, std::string& fault) {
-    CudaOptions options;
-    options.multiprocessors = scene.multiprocessors;
-    const CycleDemand demand = cycle_demand(loaded.machine, true);
-    const auto worst_case = measure_slowest(
-        options, longest_gpu_cycles(loaded.machine.capacities, demand, gpu.tree_levels()),
-        kWorstCaseCycles, fault);
-    const std::optional<double> host_us = host_share_us(loaded, demand, fault);
-    out.longest_us = worst_case && host_us ? worst_case->us_max + *host_us : 0;
-    return worst_case && host_us;
-}
-
 }  // namespace
 
 CycleTimes times_of(std::vector<double> cycle_us) {
@@ -331,7 +322,17 @@ bool measure_model(const LoadedMachine& loaded, const ModelScene& scene, bool on
     out.memory_bytes = containment_test->size_bytes() +
                        (gpu ? gpu->memory().device_bytes() + gpu->memory().pinned_bytes
                             : cpu->memory().total_bytes());
-    WatchedEngine watch{.engine = gpu ? gpu->engine() : cpu->engine()};
+    // The constructed longest cycle of the machine's plan, as admission measures it.
+    const std::optional<MeasuredGpuCycle> longest =
+        gpu ? measure_gpu_cycle(loaded, cycle_demand(loaded.machine, true), gpu->tree_levels(),
+                                scene.multiprocessors, fault)
+            : std::nullopt;
+    if (gpu && !longest) {
+        return false;
+    }
+    out.longest_us = longest ? longest->us() : out.longest_us;
+    WatchedEngine watch{.engine = gpu ? with_host(gpu->engine(), *cpu, longest->host_stages)
+                                      : cpu->engine()};
     measure_contact(loaded.machine, scene, watch.watched(), out);
     if (loaded.machine.guard.promise == StopPromise::independent) {
         measure_rest(loaded.machine, scene, watch.watched(), *containment_test, *certificate, out);
@@ -346,7 +347,7 @@ bool measure_model(const LoadedMachine& loaded, const ModelScene& scene, bool on
         fault = gpu->fault();
         return false;
     }
-    return !gpu || measure_longest(loaded, scene, *gpu, out, fault);
+    return true;
 }
 
 }  // namespace axg

@@ -166,6 +166,17 @@ TEST_F(CudaGuardChain, DecidesWhatItDecidesOverTheCpu) {
             EXPECT_TRUE(!is_stoppable || program != test::kDemoProgram ||
                         counted.calls_of_parts != 0)
                 << "near contact the engine poses";
+            for (const std::uint32_t of_host : {1U, 2U}) {
+                Counted few{gpu->engine()};
+                const Decisions shared = replayed(
+                    paper.loaded, *paper.containment_test,
+                    with_host(Counted::over(few), *paper.engine, of_host), frames, is_stoppable);
+                ASSERT_EQ(gpu->fault(), nullptr) << gpu->fault();
+                EXPECT_TRUE(cpu.without_work() == shared.without_work())
+                    << of_host << ": " << first_difference(cpu, shared);
+                EXPECT_TRUE(is_stoppable ? few.calls < counted.calls : few.calls == counted.calls)
+                    << of_host << ": " << few.calls << " of " << counted.calls;
+            }
             if (!is_stoppable) {
                 EXPECT_EQ(counted.calls, found.samples.size() + 1)
                     << "a sample is one batch, and the self-test";
@@ -187,6 +198,7 @@ TEST_F(CudaGuardChain, MayRunOnlyWhereItsLongestCycleFits) {
     };
     const ChosenEngine generous = chosen_for(true, 1'000'000);
     EXPECT_TRUE(generous.gpu) << generous.words;
+    EXPECT_EQ(generous.host_stages, 2U) << "they have few queries: " << generous.words;
     EXPECT_EQ(generous.refusal, EngineRefusal::none);
     const ChosenEngine narrow = chosen_for(false, 30);
     EXPECT_FALSE(narrow.gpu) << narrow.words;

@@ -117,6 +117,44 @@ struct WiderSlides : Slides {
     }
 };
 
+// The first stages may go to another engine, on the host: with the same results, one launch less
+// each, and where that engine is lost the cycle is.
+TEST(StagedProver, TheFirstStagesMayGoToTheHost) {
+    const auto judge = [](const Query& query) {
+        const double far_mm[] = {20, 4.6, 1.1, 0.2};  // of each pair
+        return query.r_mm <= far_mm[query.mesh_a - 1] ? Proof::far : Proof::not_proven;
+    };
+    for (const std::uint32_t stages : {2U, 3U}) {
+        for (std::uint32_t of_host = 0; of_host <= stages; ++of_host) {
+            SCOPED_TRACE(std::to_string(of_host) + " of " + std::to_string(stages));
+            Slides slides(4), other(4);
+            CyclePlan plan = Slides::plan(stages, TreeForm::leaves, 16);
+            plan.queries[1] = stages == 3 ? 8 : 16;
+            auto prover = StagedProver::create(slides.machine, 4, plan, kKnownAnswerMesh);
+            ToldEngine alone{.judge = judge, .prefers_batches = true};
+            const StagedWork wanted = prover->prove(alone.engine(), slides.tasks, slides.results);
+            ToldEngine gpu{.judge = judge, .prefers_batches = true}, host{.judge = judge};
+            Engine both = gpu.engine();
+            both.host = {of_host, &host, ToldEngine::run};
+            const StagedWork found = prover->prove(both, other.tasks, other.results);
+            EXPECT_EQ(gpu.calls.size(), stages - of_host);
+            EXPECT_EQ(host.calls.empty(), of_host == 0);
+            EXPECT_EQ(found.stages, wanted.stages);
+            EXPECT_EQ(found.known_answer_signature, kKnownAnswerSignature);
+            for (std::uint32_t i = 0; i < 4; ++i) {
+                EXPECT_EQ(other.results[i].proof, slides.results[i].proof) << i;
+                EXPECT_EQ(other.results[i].open.centre, slides.results[i].open.centre) << i;
+            }
+            EXPECT_EQ(slides.results[0].proof, JointBoxProof::proven);
+            EXPECT_EQ(slides.results[3].proof, JointBoxProof::budget_spent);
+            host.spoil = [](std::uint32_t, std::span<const Query>, std::span<QueryResult> results,
+                            std::span<GroupWork>) { results.back() = QueryResult{}; };
+            static_cast<void>(prover->prove(both, other.tasks, other.results));
+            EXPECT_EQ(other.results[0].proof == JointBoxProof::engine_failed, of_host != 0);
+        }
+    }
+}
+
 // A pair that is far over the larger box is asked once; one that is not gets its tree over the
 // smaller box, and the larger one none.
 TEST(StagedProver, WhatIsFarOverALargerBoxIsNotAskedAgain) {

@@ -161,6 +161,31 @@ TEST_F(LongestGpuCycle, TheHostsShareIsMeasured) {
     EXPECT_EQ(host_share_us(loaded_, cycle_demand(loaded_.machine, false), fault), 0.0);
 }
 
+// Stages that the host answers are no launches; how long they take is measured over a processor's
+// longest cycle of them.
+TEST_F(LongestGpuCycle, StagesOfTheHostAreNoLaunches) {
+    CycleDemand demand = cycle_demand(loaded_.machine, true);
+    const std::vector<WorstCaseCall> all = cycles(true)[0].calls;
+    ASSERT_EQ(all.size(), 3U);
+    std::string fault;
+    double before_us = 0;
+    for (const std::uint32_t of_host : {0U, 1U, 2U}) {
+        demand.host_stages = of_host;
+        const std::vector<WorstCaseCycle> made =
+            longest_gpu_cycles(loaded_.machine.capacities, demand, kLevels);
+        ASSERT_EQ(made[0].calls.size(), 3 - of_host);
+        for (std::size_t i = 0; i < made[0].calls.size(); ++i) {
+            EXPECT_EQ(made[0].calls[i].queries, all[of_host + i].queries);
+            EXPECT_EQ(made[0].calls[i].capacities.batch.leaf_pairs,
+                      all[of_host + i].capacities.batch.leaf_pairs);
+        }
+        const std::optional<double> us = host_stages_us(loaded_, demand, fault);
+        ASSERT_TRUE(us) << fault;
+        EXPECT_TRUE(of_host == 0 ? *us == 0 : *us > before_us) << *us;
+        before_us = *us;
+    }
+}
+
 // Each call can be constructed, in every layout.
 TEST_F(LongestGpuCycle, EveryCallCanBeFilled) {
     loaded_.machine.guard.jog.is_promised = true;
