@@ -330,6 +330,13 @@ void LongestCycle::run(std::span<const Query> queries, std::span<QueryResult> re
     }
 }
 
+bool LongestCycle::did_stages(std::uint32_t stages) const noexcept {
+    const auto is_behind = [stages](const Call& call) { return call.stage >= stages; };
+    const auto planned = std::find_if(calls_.begin(), calls_.end(), is_behind) - calls_.begin();
+    return !is_other_ && call_ == static_cast<std::size_t>(planned) &&
+           std::equal(planned_.begin(), planned_.begin() + stages, done_.begin());
+}
+
 Engine LongestCycle::engine() noexcept {
     return {.self = this,
             .run =

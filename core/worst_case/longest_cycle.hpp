@@ -85,6 +85,9 @@ class LongestCycle {
     [[nodiscard]] const CycleWork& done() const noexcept { return done_; }
     /// The cycle asked for other queries than the plan allows for: what was measured is not it.
     [[nodiscard]] bool is_other() const noexcept { return is_other_ || call_ != calls_.size(); }
+    /// Whether it asked for the first stages as planned, and for no other: those behind them went
+    /// to another engine.
+    [[nodiscard]] bool did_stages(std::uint32_t stages) const noexcept;
     [[nodiscard]] std::string_view lanes() const noexcept { return engine_->lanes(); }
     /// All trees, as close together as an engine has its own.
     [[nodiscard]] std::span<const std::byte> trees() const noexcept { return tree_bytes_; }

@@ -23,6 +23,7 @@
 #include "firmware_if/setup/cold_caches.hpp"
 #include "firmware_if/setup/format_plan.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
+#include "firmware_if/setup/longest_gpu_cycle.hpp"
 #include "firmware_if/setup/travel_sample.hpp"
 #include "firmware_if/system/real_time.hpp"
 
@@ -128,12 +129,17 @@ LoadedMachine without_path(const LoadedMachine& loaded) {
 /// The longest cycle of the plan that was chosen, in the engine thread's place. False: it could not
 /// be measured.
 bool measure_plan(const LoadedMachine& loaded, const LiveEngines& engines, CycleFigures& out) {
-    if (engines.chosen.gpu && engines.plan) {
-        out.worst_case_us = engines.chosen.longest_us;
-        out.plan = format_plan(engines.plan->plan);
-        return true;
-    }
     std::string fault;
+    if (engines.chosen.gpu && engines.plan) {
+        CycleDemand demand = cycle_demand(loaded.machine, true);
+        demand.plan = engines.plan->plan;
+        demand.host_stages = engines.chosen.host_stages;
+        const std::optional<double> host_us = host_share_us(loaded, demand, fault);
+        out.worst_case_us = std::max(engines.chosen.longest_us,
+                                     engines.chosen.proof_launches_us + host_us.value_or(0));
+        out.plan = format_plan(engines.plan->plan);
+        return host_us.has_value();
+    }
     const std::optional<ChosenPlan> measured =
         engines.plan ? judge_plan(loaded, engines.plan->plan, fault) : std::nullopt;
     if (measured) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware_if/guard/guard_chain.hpp"
 
+#include "core/collision/known_answer.hpp"
+
 namespace axg {
 
 GuardChain::GuardChain(const Machine& machine, Engine engine,
@@ -102,7 +104,23 @@ CycleResult GuardChain::decide(bool ready, bool is_armed) noexcept {
     return result;
 }
 
+/// An engine that no stage of this cycle went to, because the host answered all of them: a GPU
+/// whose clocks fall would make the next launch late, and one that is lost is better found now.
+/// Nothing is decided by it: an engine that is lost proves nothing from then on.
+void GuardChain::keep_awake() noexcept {
+    if (stop_certificate_->work().stages > engine_.host.stages) {
+        return;
+    }
+    const std::uint32_t mesh = known_answer_mesh_index(machine_);
+    const std::array queries{known_answer_query(mesh, false), known_answer_query(mesh, true)};
+    std::array<QueryResult, queries.size()> results;
+    engine_(queries, results);
+}
+
 void GuardChain::update_advisories() noexcept {
+    if (stop_certificate_ != nullptr && engine_.host.stages != 0) {
+        keep_awake();
+    }
     if (stop_certificate_ == nullptr) {
         if (margin_advisory_ != nullptr) {
             margin_advisory_->update(engine_, pair_queries_, results(), containment_results());

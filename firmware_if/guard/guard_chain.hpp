@@ -70,8 +70,8 @@ class GuardChain {
     /// @param is_armed  a permit would be sent: what is not proven stops
     [[nodiscard]] CycleResult decide(bool ready, bool is_armed) noexcept;
 
-    /// Queries on for the advisories of the next cycle, with what this one has left. After its
-    /// frames have been sent: a permit waits for no advisory.
+    /// Queries on for the advisories of the next cycle, with what this one has left, and wakes a
+    /// GPU that it did not query. After its frames have been sent: a permit waits for no advisory.
     void update_advisories() noexcept;
 
     /// CapGuard::ignore: under a trace.
@@ -104,6 +104,7 @@ class GuardChain {
 
   private:
     void note_caps(const CapFacts& caps, bool is_first) noexcept;
+    void keep_awake() noexcept;
     void evaluate_together() noexcept;
     void evaluate_in_turn(const EvaluationClock& clock);
     [[nodiscard]] bool is_queried() const noexcept {

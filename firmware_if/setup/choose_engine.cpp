@@ -68,12 +68,11 @@ std::string parts_of(const MeasuredGpuCycle& longest) {
     if (longest.host_us == 0) {
         return launches;
     }
-    const std::string host_stages =
-        longest.host_stages_us == 0
-            ? ""
-            : fmt::format(", {} {} on the host {:.0f} us", longest.host_stages,
-                          longest.host_stages == 1 ? "stage" : "stages", longest.host_stages_us);
-    return fmt::format("{} {:.0f} us{}, host {:.0f} us", launches, longest.launches_us, host_stages,
+    const std::string stages = longest.host_stages == 0
+                                   ? ""
+                                   : fmt::format(" with {} {}", longest.host_stages,
+                                                 longest.host_stages == 1 ? "stage" : "stages");
+    return fmt::format("{} {:.0f} us, host{} {:.0f} us", launches, longest.launches_us, stages,
                        longest.host_us);
 }
 
@@ -83,10 +82,11 @@ bool is_admitted(const LoadedMachine& loaded, const CudaEngine& gpu, const Cycle
     const std::optional<MeasuredGpuCycle> measured =
         measure_gpu_cycle(loaded, demand, gpu.tree_levels(), multiprocessors, out.words);
     if (!measured) {
-        out.refusal = EngineRefusal::no_gpu;
+        out.refusal = EngineRefusal::unfit;
         return false;
     }
     out.longest_us = measured->us();
+    out.proof_launches_us = measured->proof_launches_us;
     out.host_stages = measured->host_stages;
     out.words = fmt::format("{}: longest cycle ({}) {:.0f} us, limit {:.0f} us (deadline {} us)",
                             name_of(measured->device), parts_of(*measured), out.longest_us,
@@ -129,46 +129,47 @@ std::optional<MeasuredGpuCycle> measure_gpu_cycle(const LoadedMachine& loaded,
                                                   std::string& fault) {
     CudaOptions options;
     options.multiprocessors = multiprocessors;
-    const Capacities& capacities = loaded.machine.capacities;
-    const std::optional<double> host_us = host_share_us(loaded, demand, fault);
-    if (!host_us) {
-        return std::nullopt;
-    }
     const auto measure = [&](const WorstCaseCycle& cycle, std::uint32_t host_stages,
-                             double host_stages_us) -> std::optional<MeasuredGpuCycle> {
+                             double host_us) -> std::optional<MeasuredGpuCycle> {
         const auto launches = measure_slowest(options, {cycle}, kWorstCaseCycles, fault);
         if (!launches) {
             return std::nullopt;
         }
-        return MeasuredGpuCycle{launches->device, launches_of(cycle), host_stages,
-                                launches->us_max, host_stages_us,     *host_us};
+        return MeasuredGpuCycle{.device = launches->device,
+                                .launches = launches_of(cycle),
+                                .host_stages = host_stages,
+                                .launches_us = launches->us_max,
+                                .proof_launches_us = launches->us_max,
+                                .host_us = host_us};
     };
-    // Where a jog begins nothing is proven: that cycle is the same whoever answers the stages.
-    const std::vector<WorstCaseCycle> all = longest_gpu_cycles(capacities, demand, tree_levels);
-    std::optional<MeasuredGpuCycle> jog;
-    if (all.size() > 1) {
-        jog = measure(all[1], 0, 0);
-        if (!jog) {
-            return std::nullopt;
-        }
-    }
     std::optional<MeasuredGpuCycle> proof;
     CycleDemand here = demand;
     for (std::uint32_t left = host_stages_max(demand) + 1; left-- > 0;) {
         here.host_stages = left;
-        const std::optional<double> own_us = host_stages_us(loaded, here, fault);
-        proof = own_us ? measure(longest_gpu_cycles(capacities, here, tree_levels).front(), left,
-                                 *own_us)
-                       : std::nullopt;
-        if (!proof || proof->us() <= demand.times.engine_us) {
+        const std::optional<double> host_us = host_share_us(loaded, here, fault);
+        proof =
+            host_us
+                ? measure(longest_gpu_cycles(loaded.machine.capacities, here, tree_levels).front(),
+                          left, *host_us)
+                : std::nullopt;
+        if (proof && proof->us() <= demand.times.engine_us) {
             break;
         }
     }
-    if (!proof || !jog || jog->us() <= proof->us()) {
+    // Where a jog begins nothing is proven: all of that cycle's calls are the GPU's.
+    here.host_stages = 0;
+    const std::vector<WorstCaseCycle> all =
+        longest_gpu_cycles(loaded.machine.capacities, here, tree_levels);
+    if (!proof || all.size() == 1) {
         return proof;
     }
-    jog->host_stages = proof->host_stages;
-    return jog;
+    const std::optional<double> host_us = host_share_us(loaded, here, fault);
+    std::optional<MeasuredGpuCycle> jog =
+        host_us ? measure(all[1], proof->host_stages, *host_us) : std::nullopt;
+    if (jog) {
+        jog->proof_launches_us = proof->launches_us;
+    }
+    return !jog || jog->us() > proof->us() ? jog : proof;
 }
 
 std::string name_of(const CudaDevice& device) {

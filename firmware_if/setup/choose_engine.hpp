@@ -29,6 +29,7 @@ struct ChosenEngine {
     std::uint32_t host_stages = 0;    // of a plan: the CPU engine answers so many first ones
     std::string words{};              // what was measured and chosen, or why nothing may run
     double longest_us = 0;            // what the longest cycle took on the GPU; 0: not measured
+    double proof_launches_us = 0;     // and its launches, where no jog begins
     EngineRefusal refusal = EngineRefusal::none;
 
     [[nodiscard]] std::string gpu_name() const { return gpu ? name_of(gpu->device()) : ""; }
@@ -54,10 +55,10 @@ struct CycleDemand {
 struct MeasuredGpuCycle {
     CudaDevice device;
     std::uint32_t launches = 0, host_stages = 0;
-    // The launches; the stages that the host answers; what it does besides, posing above all.
-    double launches_us = 0, host_stages_us = 0, host_us = 0;
+    double launches_us = 0, proof_launches_us = 0;  // the latter where no jog begins
+    double host_us = 0;  // what the host does besides: its stages, posing, rays
 
-    [[nodiscard]] double us() const noexcept { return launches_us + host_stages_us + host_us; }
+    [[nodiscard]] double us() const noexcept { return launches_us + host_us; }
 };
 /// The host answers as many of the first stages as have few queries, or fewer where the longest
 /// cycle would not fit into the deadline. Empty, with `fault` set: as measure_worst_case.
@@ -69,7 +70,7 @@ struct MeasuredGpuCycle {
 
 /// cuda: the engine on a GPU, or a refusal. automatic: that engine if it is there, may run, and
 /// answers the checked pairs faster than `cpu` does, at positions spread over the travel.
-/// Takes about two seconds with a GPU; without one, automatic prints nothing.
+/// Takes some seconds with a GPU; without one, automatic prints nothing.
 /// @param multiprocessors  as make_gpu_engine: what is measured runs on that partition, too
 [[nodiscard]] ChosenEngine choose_engine(const LoadedMachine& loaded, CpuEngine& cpu,
                                          EngineChoice wanted, const CycleDemand& demand,

@@ -7,7 +7,6 @@
 #include "core/certificate/jog.hpp"
 #include "core/certificate/pair_queries.hpp"
 #include "core/worst_case/worst_case_batch.hpp"
-#include "firmware_if/setup/choose_plan.hpp"
 #include "firmware_if/setup/measure_cycle.hpp"
 
 namespace axg {
@@ -128,23 +127,11 @@ std::optional<WorstCaseMeasurement> measure_slowest(const CudaOptions& options,
     return slowest;
 }
 
-std::optional<double> host_stages_us(const LoadedMachine& loaded, const CycleDemand& demand,
-                                     std::string& fault) {
-    if (demand.host_stages == 0) {
-        return 0.0;
-    }
-    CyclePlan plan = *demand.plan;
-    if (demand.host_stages == 1) {
-        plan.lists[0] = most_of_first(plan, demand.asks_twice);
-    }
-    plan.stages = demand.host_stages;
-    const std::optional<ChosenPlan> judged = judge_plan(loaded, plan, fault);
-    return judged ? std::optional(judged->longest_us - judged->posing_us) : std::nullopt;
-}
-
 std::optional<double> host_share_us(const LoadedMachine& loaded, const CycleDemand& demand,
                                     std::string& fault) {
-    return demand.plan ? measure_host_us(loaded, *demand.plan, demand.poses_parts, fault) : 0.0;
+    return demand.plan ? measure_host_us(loaded, *demand.plan, demand.host_stages,
+                                         demand.poses_parts, fault)
+                       : 0.0;
 }
 
 }  // namespace axg

@@ -27,14 +27,8 @@ namespace axg {
     const CudaOptions& options, std::vector<WorstCaseCycle> cycles, std::uint32_t count,
     std::string& fault);
 
-/// How long the CPU engine takes for the stages that the host answers (CycleDemand), with their
-/// lists full, its caches and code cold; 0: there are none. Empty, with `fault` set: as
-/// measure_cycle.
-[[nodiscard]] std::optional<double> host_stages_us(const LoadedMachine& loaded,
-                                                   const CycleDemand& demand, std::string& fault);
-
-/// What the host does in such a cycle beside the launches; 0 in contact mode, where it poses each
-/// pair once. Empty, with `fault` set: as measure_host_us.
+/// What the host does in such a cycle beside the launches, its stages included (CycleDemand); 0 in
+/// contact mode, where it poses each pair once. Empty, with `fault` set: as measure_host_us.
 [[nodiscard]] std::optional<double> host_share_us(const LoadedMachine& loaded,
                                                   const CycleDemand& demand, std::string& fault);
 

@@ -251,17 +251,24 @@ std::vector<CycleShape> all_shapes(const CyclePlan& plan, std::uint32_t tasks, b
     return shapes;
 }
 
+LongestCycle::Options longest_options(const Machine& machine, const CyclePlan& plan,
+                                      std::size_t memory_bytes, LaneSet lanes) {
+    const auto has_rechecks = [](const WorkLists& lists) { return lists.rechecks != 0; };
+    return {.known_answer_mesh = known_answer_mesh_index(machine),
+            .memory_bytes = memory_bytes,
+            .is_float_only = std::none_of(plan.lists.begin(), plan.lists.end(), has_rechecks),
+            .lanes = lanes};
+}
+
+constexpr const char* kOtherWork = "internal error: the worst-case cycle did unexpected work";
+
 /// Empty, or why this shape could not be measured.
 std::string measure_shape(const CycleShape& shape, const Machine& machine,
                           const CycleMeasureOptions& options, Chain& chain, ColdCaches& caches,
                           CycleMeasurement& out) {
     std::string fault;
-    const auto has_rechecks = [](const WorkLists& lists) { return lists.rechecks != 0; };
-    const LongestCycle::Options made{
-        .known_answer_mesh = known_answer_mesh_index(machine),
-        .memory_bytes = out.memory_bytes,
-        .is_float_only = std::none_of(out.plan.lists.begin(), out.plan.lists.end(), has_rechecks),
-        .lanes = options.lanes};
+    const LongestCycle::Options made =
+        longest_options(machine, out.plan, out.memory_bytes, options.lanes);
     std::optional<LongestCycle> cycle = LongestCycle::create(out.plan, shape, made, fault);
     if (!cycle) {  // lists of other shapes than the usual one do not fill every layout
         return shape.layout == CycleLayout::rows ? fault : std::string();
@@ -272,7 +279,7 @@ std::string measure_shape(const CycleShape& shape, const Machine& machine,
         Repeats(chain, *cycle, caches).measure(condition, options.groups_of_repeats, line);
         const bool is_exact = shape.layout != CycleLayout::overflowing;
         if (cycle->is_other() || (is_exact && line.work != cycle->planned())) {
-            return "internal error: the worst-case cycle did unexpected work";
+            return kOtherWork;
         }
         out.lines.push_back(std::move(line));
         if (out.lines.back().least.wall_us > out.longest_us()) {
@@ -280,6 +287,97 @@ std::string measure_shape(const CycleShape& shape, const Machine& machine,
         }
     }
     return {};
+}
+
+/// Layouts that were longest on every machine so far.
+constexpr std::array kLongestLayouts{CycleLayout::rows, CycleLayout::even};
+
+/// A constructed longest cycle whose first stages the CPU engine answers, and a GPU at once those
+/// behind them.
+struct SharedCycle {
+    std::uint32_t host_stages = 0;
+    bool poses_parts = false;
+    std::uint32_t far_from = 0;  // of the GPU's calls
+
+    /// The least of some. Empty: the cycle did other work.
+    [[nodiscard]] std::optional<double> least_us(Chain& chain, LongestCycle& cycle,
+                                                 CacheCondition condition,
+                                                 ColdCaches& caches) const {
+        std::optional<MemoryCopier> copier;
+        if (condition == CacheCondition::beside_copier) {
+            copier.emplace();
+        }
+        const Engine host = cycle.engine();
+        double least = 1e12;
+        for (std::uint32_t i = 0; i < kCycleRepeats; ++i) {
+            chain.forget();
+            prepare(condition, caches, cycle.trees());
+            cycle.begin();
+            IdleGpu gpu{.tasks = 1, .open = 1, .far_from = far_from};
+            Engine engine = gpu.engine(poses_parts);
+            engine.host = {host_stages, host.self, host.run_groups};
+            least = std::min(least, chain.run(engine).wall_us);
+            if (!cycle.did_stages(host_stages)) {
+                return std::nullopt;
+            }
+        }
+        return least;
+    }
+};
+
+/// Of all shapes, proven in the last stage or not, the longest, and that under every condition.
+std::optional<double> measure_with_stages(MeasuredMachine& measured, const CyclePlan& plan,
+                                          std::uint32_t host_stages, bool poses_parts,
+                                          std::string& fault) {
+    Chain& chain = *measured.chain;
+    const Machine& machine = measured.loaded.machine;
+    const LongestCycle::Options made =
+        longest_options(machine, plan, measured.engine->memory().trees_bytes, LaneSet::widest);
+    const std::uint32_t of_gpu = plan.stages - host_stages;
+    ColdCaches caches;
+    CycleShape longest;
+    SharedCycle cycle{.host_stages = host_stages, .poses_parts = poses_parts}, longest_cycle;
+    double longest_us = 0;
+    const auto take = [&](LongestCycle& constructed, CacheCondition condition) {
+        const std::optional<double> us = cycle.least_us(chain, constructed, condition, caches);
+        fault = us ? fault : kOtherWork;
+        return us;
+    };
+    for (CycleShape shape :
+         cycle_shapes(plan, chain.tasks(), tries_longer(machine.can.permit_samples))) {
+        for (const CycleLayout layout : kLongestLayouts) {
+            shape.layout = layout;
+            std::optional<LongestCycle> constructed =
+                LongestCycle::create(plan, shape, made, fault);
+            if (!constructed && layout == CycleLayout::rows) {
+                return std::nullopt;
+            }
+            for (const std::uint32_t far_from : {of_gpu - 1, of_gpu}) {
+                cycle.far_from = far_from;
+                const std::optional<double> us =
+                    constructed ? take(*constructed, CacheCondition::code_cold) : 0.0;
+                if (!us) {
+                    return std::nullopt;
+                }
+                if (*us > longest_us) {
+                    longest_us = *us;
+                    longest = shape;
+                    longest_cycle = cycle;
+                }
+            }
+        }
+    }
+    fault.clear();
+    cycle = longest_cycle;
+    std::optional<LongestCycle> constructed = LongestCycle::create(plan, longest, made, fault);
+    for (const CacheCondition condition : kCacheConditions) {
+        const std::optional<double> us = constructed ? take(*constructed, condition) : std::nullopt;
+        if (!us) {
+            return std::nullopt;
+        }
+        longest_us = std::max(longest_us, *us);
+    }
+    return longest_us;
 }
 
 }  // namespace
@@ -290,13 +388,17 @@ const char* name_of(CacheCondition condition) noexcept {
 }
 
 std::optional<double> measure_host_us(const LoadedMachine& loaded, const CyclePlan& plan,
-                                      bool poses_parts, std::string& fault) {
+                                      std::uint32_t host_stages, bool poses_parts,
+                                      std::string& fault) {
     MeasuredMachine measured(loaded, plan);
     if (!measured.chain) {
         fault = measured.fault();
         return std::nullopt;
     }
     Chain& chain = *measured.chain;
+    if (host_stages != 0 && chain.tasks() != 0) {
+        return measure_with_stages(measured, plan, host_stages, poses_parts, fault);
+    }
     const auto least_us = [&](IdleGpu gpu, const auto& before) {
         double least = 1e12;
         for (std::uint32_t i = 0; i < kCycleRepeats; ++i) {

@@ -62,9 +62,11 @@ struct CycleMeasurement {
 /// What the host does in a cycle over an engine on a GPU that answers at once: from snapshot to
 /// decision, the longest of all conditions, numbers of open pairs, and stages in which they are
 /// proven. Its own launches are not in it. Empty, with `fault` set: no memory.
+/// @param host_stages  the CPU engine answers so many first stages, with their lists full
 /// @param poses_parts  as Engine::run_parts; else the host poses every box
 [[nodiscard]] std::optional<double> measure_host_us(const LoadedMachine& loaded,
-                                                    const CyclePlan& plan, bool poses_parts,
+                                                    const CyclePlan& plan,
+                                                    std::uint32_t host_stages, bool poses_parts,
                                                     std::string& fault);
 
 /// Empty, with `fault` set: no such lanes, no memory, lists that do not go together, or a machine

@@ -162,11 +162,15 @@ struct Case {
         plan = plan_of(random() % 2 == 0 ? 2 : 3, static_cast<std::uint32_t>(tasks.size()), queries,
                        {1000, 1000, 1000, 1000, 0});
     }
-    std::vector<JointBoxResult> prove(HashEngine& engine, bool poses, StagedWork& work) const {
+    /// @param of_host  stages that `engine` answers as one on the host
+    std::vector<JointBoxResult> prove(HashEngine& engine, bool poses, StagedWork& work,
+                                      std::uint32_t of_host = 0) const {
         std::vector<JointBoxResult> results(tasks.size());
         auto prover =
             StagedProver::create(machine, static_cast<std::uint32_t>(tasks.size()), plan, kNoIndex);
-        work = prover->prove(engine.engine(poses), tasks, results);
+        Engine asked = engine.engine(poses);
+        asked.host = {of_host, &engine, HashEngine::run_groups};
+        work = prover->prove(asked, tasks, results);
         return results;
     }
     [[nodiscard]] bool counts_alike() const {  // what is far without a query counts as one
@@ -200,6 +204,15 @@ TEST(PosedParts, AreTheQueriesThatTheProverPoses) {
         for (std::size_t i = 0; i < wanted.size(); ++i) {
             ASSERT_TRUE(is_alike(wanted[i], found[i])) << "machine " << n << ", task " << i;
             open += wanted[i].proof == JointBoxProof::budget_spent ? 1 : 0;
+        }
+        for (std::uint32_t of_host = 1; of_host <= c.plan.stages; ++of_host) {
+            HashEngine shared{.salt = told.salt, .far_share = told.far_share};
+            StagedWork shared_work;
+            const auto same = c.prove(shared, true, shared_work, of_host);
+            for (std::size_t i = 0; i < wanted.size(); ++i) {
+                ASSERT_TRUE(is_alike(wanted[i], same[i]))
+                    << "machine " << n << ", task " << i << ", " << of_host << " on the host";
+            }
         }
         ASSERT_EQ(told_work.calls, posing_work.calls);
         ASSERT_TRUE(std::equal(told.queries.begin(), told.queries.end(), posing.queries.begin(),

@@ -53,5 +53,60 @@ TEST(LiveEngine, APermitWaitsForNoSpeedCap) {
     EXPECT_EQ(caps.back(), kSpeedCapRapid);
 }
 
+/// A GPU in place of which a CPU engine answers, and how often it was called.
+struct CountedGpu {
+    Engine engine;
+    std::uint32_t calls = 0;
+
+    [[nodiscard]] Engine counted() {
+        Engine out{.self = this, .prefers_batches = true};
+        out.run = [](void* self, std::span<const Query> queries,
+                     std::span<QueryResult> results) noexcept {
+            auto& own = *static_cast<CountedGpu*>(self);
+            ++own.calls;
+            own.engine(queries, results);
+        };
+        out.run_groups = [](void* self, std::span<const Query> queries,
+                            std::span<QueryResult> results, std::span<GroupWork> groups) noexcept {
+            auto& own = *static_cast<CountedGpu*>(self);
+            ++own.calls;
+            own.engine(queries, results, groups);
+        };
+        return out;
+    }
+};
+
+// A GPU without work would sleep: where the host answered every stage, it is called when the permit
+// is out.
+TEST(LiveEngine, AGpuThatNoStageWentToIsKeptAwake) {
+    test::PaperMachine paper;
+    const Machine& machine = paper.loaded.machine;
+    for (const std::uint32_t of_host : {0U, 2U}) {
+        std::optional<StopCertificate> certificate = make_stop_certificate(paper.loaded);
+        ASSERT_TRUE(paper.engine && paper.containment_test && certificate);
+        CountedGpu gpu{paper.engine->engine()};
+        Engine engine = gpu.counted();
+        engine.host = {of_host, gpu.engine.self, gpu.engine.run_groups};
+        GuardChain chain(machine, engine, *paper.containment_test, &*certificate);
+        ReceiverEvent event;
+        event.kind = ReceiverEvent::Kind::snapshot;
+        event.state = ReceiverState::valid;
+        event.snapshot.axis_count = static_cast<std::uint32_t>(machine.axes.size());
+        event.snapshot.position = default_start(machine);
+        event.snapshot.tool = machine.first_tool;
+        for (std::uint32_t i = 1; i <= 2 * kSamplesKept; ++i) {
+            event.snapshot.sample = i;
+            chain.take(event);
+            const std::uint32_t before = gpu.calls;
+            chain.evaluate();
+            static_cast<void>(chain.decide(true, true));
+            EXPECT_EQ(gpu.calls - before, of_host == 0 ? 1U : 0U) << i;
+            const std::uint32_t decided = gpu.calls;
+            chain.update_advisories();
+            EXPECT_EQ(gpu.calls - decided, of_host == 0 ? 0U : 1U) << i;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace axg

@@ -161,8 +161,7 @@ TEST_F(LongestGpuCycle, TheHostsShareIsMeasured) {
     EXPECT_EQ(host_share_us(loaded_, cycle_demand(loaded_.machine, false), fault), 0.0);
 }
 
-// Stages that the host answers are no launches; how long they take is measured over a processor's
-// longest cycle of them.
+// Stages that the host answers are no launches; the host's share has them, with their lists full.
 TEST_F(LongestGpuCycle, StagesOfTheHostAreNoLaunches) {
     CycleDemand demand = cycle_demand(loaded_.machine, true);
     const std::vector<WorstCaseCall> all = cycles(true)[0].calls;
@@ -179,9 +178,10 @@ TEST_F(LongestGpuCycle, StagesOfTheHostAreNoLaunches) {
             EXPECT_EQ(made[0].calls[i].capacities.batch.leaf_pairs,
                       all[of_host + i].capacities.batch.leaf_pairs);
         }
-        const std::optional<double> us = host_stages_us(loaded_, demand, fault);
+        const std::optional<double> us = host_share_us(loaded_, demand, fault);
         ASSERT_TRUE(us) << fault;
-        EXPECT_TRUE(of_host == 0 ? *us == 0 : *us > before_us) << *us;
+        // The second stage has most of the pairs of leaves; the first is within what times vary.
+        EXPECT_TRUE(of_host != 2 || *us > before_us) << *us << " after " << before_us;
         before_us = *us;
     }
 }
