@@ -143,10 +143,11 @@ std::optional<MeasuredGpuCycle> measure_gpu_cycle(const LoadedMachine& loaded,
                                 .host_us = host_us};
     };
     std::optional<MeasuredGpuCycle> proof;
+    std::optional<double> host_us;
     CycleDemand here = demand;
     for (std::uint32_t left = host_stages_max(demand) + 1; left-- > 0;) {
         here.host_stages = left;
-        const std::optional<double> host_us = host_share_us(loaded, here, fault);
+        host_us = host_share_us(loaded, here, fault);
         proof =
             host_us
                 ? measure(longest_gpu_cycles(loaded.machine.capacities, here, tree_levels).front(),
@@ -157,13 +158,14 @@ std::optional<MeasuredGpuCycle> measure_gpu_cycle(const LoadedMachine& loaded,
         }
     }
     // Where a jog begins nothing is proven: all of that cycle's calls are the GPU's.
+    const bool is_measured = here.host_stages == 0;
     here.host_stages = 0;
     const std::vector<WorstCaseCycle> all =
         longest_gpu_cycles(loaded.machine.capacities, here, tree_levels);
     if (!proof || all.size() == 1) {
         return proof;
     }
-    const std::optional<double> host_us = host_share_us(loaded, here, fault);
+    host_us = is_measured ? host_us : host_share_us(loaded, here, fault);
     std::optional<MeasuredGpuCycle> jog =
         host_us ? measure(all[1], proof->host_stages, *host_us) : std::nullopt;
     if (jog) {

@@ -30,17 +30,11 @@ constexpr std::array<PlanStep, kPlanSteps> kSteps{{{16, 10, 12, 24},
 // What is chosen has to pass the admission a moment later, on another thread.
 constexpr double kChosenShare = 0.95;
 
-/// Whatever its length is measured at: layouts that were longest on every machine so far.
 CycleMeasureOptions quick_options(const CyclePlan& plan, const Machine& machine) {
     CycleMeasureOptions options;
     options.conditions = {CacheCondition::code_cold};
-    for (const CycleLayout layout : {CycleLayout::rows, CycleLayout::even}) {
-        for (CycleShape shape :
-             cycle_shapes(plan, stop_tasks(machine), tries_longer(machine.can.permit_samples))) {
-            shape.layout = layout;
-            options.shapes.push_back(shape);
-        }
-    }
+    options.shapes =
+        longest_shapes(plan, stop_tasks(machine), tries_longer(machine.can.permit_samples));
     return options;
 }
 

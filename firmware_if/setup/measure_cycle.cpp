@@ -240,9 +240,10 @@ class Repeats {
     ColdCaches& caches_;
 };
 
-std::vector<CycleShape> all_shapes(const CyclePlan& plan, std::uint32_t tasks, bool asks_twice) {
+std::vector<CycleShape> shapes_in(std::span<const CycleLayout> layouts, const CyclePlan& plan,
+                                  std::uint32_t tasks, bool asks_twice) {
     std::vector<CycleShape> shapes;
-    for (const CycleLayout layout : kCycleLayouts) {
+    for (const CycleLayout layout : layouts) {
         for (CycleShape shape : cycle_shapes(plan, tasks, asks_twice)) {
             shape.layout = layout;
             shapes.push_back(shape);
@@ -288,9 +289,6 @@ std::string measure_shape(const CycleShape& shape, const Machine& machine,
     }
     return {};
 }
-
-/// Layouts that were longest on every machine so far.
-constexpr std::array kLongestLayouts{CycleLayout::rows, CycleLayout::even};
 
 /// A constructed longest cycle whose first stages the CPU engine answers, and a GPU at once those
 /// behind them.
@@ -343,27 +341,23 @@ std::optional<double> measure_with_stages(MeasuredMachine& measured, const Cycle
         fault = us ? fault : kOtherWork;
         return us;
     };
-    for (CycleShape shape :
-         cycle_shapes(plan, chain.tasks(), tries_longer(machine.can.permit_samples))) {
-        for (const CycleLayout layout : kLongestLayouts) {
-            shape.layout = layout;
-            std::optional<LongestCycle> constructed =
-                LongestCycle::create(plan, shape, made, fault);
-            if (!constructed && layout == CycleLayout::rows) {
+    for (const CycleShape& shape :
+         longest_shapes(plan, chain.tasks(), tries_longer(machine.can.permit_samples))) {
+        std::optional<LongestCycle> constructed = LongestCycle::create(plan, shape, made, fault);
+        if (!constructed && shape.layout == CycleLayout::rows) {
+            return std::nullopt;
+        }
+        for (const std::uint32_t far_from : {of_gpu - 1, of_gpu}) {
+            cycle.far_from = far_from;
+            const std::optional<double> us =
+                constructed ? take(*constructed, CacheCondition::code_cold) : 0.0;
+            if (!us) {
                 return std::nullopt;
             }
-            for (const std::uint32_t far_from : {of_gpu - 1, of_gpu}) {
-                cycle.far_from = far_from;
-                const std::optional<double> us =
-                    constructed ? take(*constructed, CacheCondition::code_cold) : 0.0;
-                if (!us) {
-                    return std::nullopt;
-                }
-                if (*us > longest_us) {
-                    longest_us = *us;
-                    longest = shape;
-                    longest_cycle = cycle;
-                }
+            if (*us > longest_us) {
+                longest_us = *us;
+                longest = shape;
+                longest_cycle = cycle;
             }
         }
     }
@@ -385,6 +379,12 @@ std::optional<double> measure_with_stages(MeasuredMachine& measured, const Cycle
 const char* name_of(CacheCondition condition) noexcept {
     constexpr const char* kNames[] = {"warm", "cold", "cold code", "with a memory copy running"};
     return kNames[static_cast<unsigned>(condition)];
+}
+
+std::vector<CycleShape> longest_shapes(const CyclePlan& plan, std::uint32_t tasks,
+                                       bool asks_twice) {
+    constexpr std::array kLongest{CycleLayout::rows, CycleLayout::even};
+    return shapes_in(kLongest, plan, tasks, asks_twice);
 }
 
 std::optional<double> measure_host_us(const LoadedMachine& loaded, const CyclePlan& plan,
@@ -461,7 +461,8 @@ std::optional<CycleMeasurement> measure_cycle(const LoadedMachine& loaded, const
     ColdCaches caches;
     for (const CycleShape& shape :
          options.shapes.empty()
-             ? all_shapes(plan, out.tasks, tries_longer(measured.loaded.machine.can.permit_samples))
+             ? shapes_in(kCycleLayouts, plan, out.tasks,
+                         tries_longer(measured.loaded.machine.can.permit_samples))
              : options.shapes) {
         fault = measure_shape(shape, measured.loaded.machine, options, chain, caches, out);
         if (!fault.empty()) {

@@ -59,6 +59,10 @@ struct CycleMeasurement {
     [[nodiscard]] double longest_us() const noexcept { return lines[longest].least.wall_us; }
 };
 
+/// cycle_shapes in the layouts that were longest on every machine so far.
+[[nodiscard]] std::vector<CycleShape> longest_shapes(const CyclePlan& plan, std::uint32_t tasks,
+                                                     bool asks_twice);
+
 /// What the host does in a cycle over an engine on a GPU that answers at once: from snapshot to
 /// decision, the longest of all conditions, numbers of open pairs, and stages in which they are
 /// proven. Its own launches are not in it. Empty, with `fault` set: no memory.
