@@ -39,6 +39,12 @@ void take_proofs(std::span<JointBoxResult> results, std::uint32_t own) noexcept 
 
 }  // namespace
 
+bool asks_first_part(const Machine& machine, const CyclePlan& plan) noexcept {
+    const auto moves = [](const Body& body) { return body.joint.axis != kNoIndex; };
+    return plan.stages > 1 && plan.form == TreeForm::leaves && lists_of(plan).rechecks == 0 &&
+           std::count_if(machine.bodies.begin(), machine.bodies.end(), moves) <= kTreeJointsMax;
+}
+
 std::optional<StagedProver> StagedProver::create(const Machine& machine, std::uint32_t tasks,
                                                  const CyclePlan& plan,
                                                  std::uint32_t known_answer_mesh) {
@@ -61,6 +67,7 @@ std::optional<StagedProver> StagedProver::create(const Machine& machine, std::ui
         return std::nullopt;
     }
     StagedProver prover(plan, known_answer_mesh, std::move(arena));
+    prover.asks_first_part_ = axg::asks_first_part(machine, plan);
     BoxQueries* const place = prover.arena_.take<BoxQueries>(1).data();
     prover.boxes_ =
         std::construct_at(place, machine, tasks, lists_of(plan).rechecks == 0, prover.arena_);
@@ -160,9 +167,12 @@ void StagedProver::judge_known_answer(const Engine& engine, std::uint32_t count,
 }
 
 /// False: the engine is lost, and nothing that it said in this cycle counts.
-bool StagedProver::end_call(std::uint32_t queries, StagedWork& work) noexcept {
+bool StagedProver::end_call(const Engine& engine, std::uint32_t queries,
+                            StagedWork& work) noexcept {
     ++work.calls;
+    work.batches += engine.prefers_batches ? 1 : 0;
     work.queries += queries;
+    work.planned_queries += queries;
     return lost_ == QueryStatus::ok;
 }
 
@@ -180,17 +190,14 @@ bool StagedProver::run(const Engine& engine, StagedWork& work) noexcept {
         node.may_be_split = may_help_to_split(result.status, queries_[i].r_mm);
         note(result.status);
     }
-    return end_call(std::exchange(query_count_, 0), work);
+    return end_call(engine, std::exchange(query_count_, 0), work);
 }
 
-/// The leaves of trees of this depth below the nodes that there are, if the engine poses them
-/// itself. False: it does not, and nothing was asked.
-bool StagedProver::plan_parts(const Engine& engine, std::span<const JointBoxTask> tasks,
+/// The leaves of trees of this depth below the first so many nodes. False: they are none that an
+/// engine poses.
+bool StagedProver::plan_parts(std::span<const JointBoxTask> tasks, std::uint32_t roots,
                               std::uint32_t depth) noexcept {
-    const std::uint32_t roots = node_count_;
-    if (engine.run_parts == nullptr || !boxes_->are_float_only() ||
-        plan_.form != TreeForm::leaves || depth > kTreeDepthOfParts ||
-        (roots << depth) + 2 > engine.parts_max) {
+    if (!boxes_->are_float_only() || plan_.form != TreeForm::leaves || depth > kTreeDepthOfParts) {
         return false;
     }
     const std::optional<std::uint32_t> trees =
@@ -202,6 +209,41 @@ bool StagedProver::plan_parts(const Engine& engine, std::span<const JointBoxTask
         roots_[i].group = static_cast<std::uint16_t>(group_of_[items_[i].task]);
     }
     parts_ = {trees_.first(*trees), roots_.first(roots), depth};
+    return true;
+}
+
+/// In the last stage one part that is not far loses the task, and near contact most parts are not:
+/// so the first one is asked alone, before all of them are posed. Where its own share is too small
+/// for that it decides nothing.
+bool StagedProver::is_lost_by_first_part(const Engine& engine, std::span<const JointBoxTask> tasks,
+                                         std::span<JointBoxResult> results, std::uint32_t depth,
+                                         StagedWork& work) noexcept {
+    if (engine.prefers_batches || !plan_parts(tasks, 1, depth)) {
+        return false;
+    }
+    Query& query = queries_[0];
+    query = Query{};
+    if (part_query({trees_[0], roots_[0], depth, 0}, query)) {
+        return false;
+    }
+    query.group = 0;
+    GroupWork group{.share = kFirstPartShare};
+    QueryResult& said = results_[0];
+    said = QueryResult{};
+    engine({&query, 1}, {&said, 1}, {&group, 1});
+    note(said.status);
+    add(work.used, group.used);
+    if (said.proof == Proof::far || said.status != QueryStatus::ok ||
+        first_full(group) != QueryStatus::ok) {
+        return false;
+    }
+    const BoxItem& root = items_[0];
+    BoxItem part;
+    boxes_->make_part(tasks[root.task], root, tree_plans_[0], depth, 0, part);
+    JointBoxResult& result = results[root.task];
+    result = {JointBoxProof::budget_spent, said.status, result.queries + 1, part.box};
+    ++work.queries;
+    work.planned_queries += node_count_ << depth;
     return true;
 }
 
@@ -238,7 +280,7 @@ bool StagedProver::run_parts(const Engine& engine, std::span<const JointBoxTask>
         last = may_be_split ? node_count_ : last;
         nodes_[node_count_++] = {root, result.status, true, false, may_be_split};
     }
-    return end_call(count, work);
+    return end_call(engine, count, work);
 }
 
 /// Trees of this depth below the nodes that there are.
@@ -246,7 +288,8 @@ bool StagedProver::run_stage(const Engine& engine, std::span<const JointBoxTask>
                              std::span<JointBoxResult> results, std::uint32_t depth, bool is_last,
                              StagedWork& work) noexcept {
     const bool is_lazy = !engine.prefers_batches;
-    if (!is_lazy && plan_parts(engine, tasks, depth)) {
+    if (engine.run_parts != nullptr && (node_count_ << depth) + 2 <= engine.parts_max &&
+        plan_parts(tasks, node_count_, depth)) {
         return run_parts(engine, tasks, results, is_last, work);
     }
     std::uint32_t begin = 0;
@@ -416,8 +459,14 @@ StagedWork StagedProver::prove(const Engine& engine, std::span<const JointBoxTas
         node_count_ = open;
         ++work.stages;
         const Engine here = engine.of_stage(stage);
-        if (!(is_first ? run_first(here, tasks, own, work)
-                       : run_stage(here, tasks, results, depth, stage + 1 == plan_.stages, work))) {
+        const bool is_last = stage + 1 == plan_.stages;
+        if (asks_first_part_ && is_last && !is_first && group_count_ == 1 &&
+            is_lost_by_first_part(engine.of_stage(stage - 1), tasks, results, depth, work)) {
+            break;
+        }
+        if (lost_ != QueryStatus::ok ||
+            !(is_first ? run_first(here, tasks, own, work)
+                       : run_stage(here, tasks, results, depth, is_last, work))) {
             for (JointBoxResult& result : results.first(tasks.size())) {
                 if (result.proof != JointBoxProof::bad_box) {
                     result.proof = JointBoxProof::engine_failed;

@@ -22,9 +22,17 @@ namespace axg {
 /// What a call of `prove` came to, all tasks together.
 struct StagedWork {
     std::uint32_t stages = 0, calls = 0, queries = 0;  // the known-answer test's do not count
-    std::uint16_t known_answer_signature = 0;          // kKnownAnswerSignature: right in every call
-    WorkLists used{};                                  // of every group but the known-answer test's
+    // And those that a lost task left out: how many that are is a matter of the engine, and what
+    // advisories may ask is not.
+    std::uint32_t planned_queries = 0;
+    std::uint32_t batches = 0;                 // calls of an engine that prefers them
+    std::uint16_t known_answer_signature = 0;  // kKnownAnswerSignature: right in every call
+    WorkLists used{};                          // of every group but the known-answer test's
 };
+
+/// Whether the first part of the last stage may be asked alone, of a machine's every pair or none:
+/// the longest cycle has to have it.
+[[nodiscard]] bool asks_first_part(const Machine& machine, const CyclePlan& plan) noexcept;
 
 class StagedProver {
   public:
@@ -68,10 +76,15 @@ class StagedProver {
     [[nodiscard]] std::span<Query> add_known_answer() noexcept;
     void judge_known_answer(const Engine& engine, std::uint32_t count, StagedWork& work) noexcept;
     void note(QueryStatus status) noexcept;
-    [[nodiscard]] bool end_call(std::uint32_t queries, StagedWork& work) noexcept;
+    [[nodiscard]] bool end_call(const Engine& engine, std::uint32_t queries,
+                                StagedWork& work) noexcept;
     [[nodiscard]] bool run(const Engine& engine, StagedWork& work) noexcept;
-    [[nodiscard]] bool plan_parts(const Engine& engine, std::span<const JointBoxTask> tasks,
+    [[nodiscard]] bool plan_parts(std::span<const JointBoxTask> tasks, std::uint32_t roots,
                                   std::uint32_t depth) noexcept;
+    [[nodiscard]] bool is_lost_by_first_part(const Engine& engine,
+                                             std::span<const JointBoxTask> tasks,
+                                             std::span<JointBoxResult> results, std::uint32_t depth,
+                                             StagedWork& work) noexcept;
     [[nodiscard]] bool run_parts(const Engine& engine, std::span<const JointBoxTask> tasks,
                                  std::span<JointBoxResult> results, bool is_last,
                                  StagedWork& work) noexcept;
@@ -87,6 +100,7 @@ class StagedProver {
 
     CyclePlan plan_;
     std::uint32_t known_answer_mesh_;
+    bool asks_first_part_ = false;
     Arena arena_;
     BoxQueries* boxes_ = nullptr;        // in the arena
     std::span<BoxItem> items_;           // a stage's trees, level by level

@@ -66,6 +66,11 @@ struct GroupWork {
 inline constexpr WorkLists kKnownAnswerShare{
     .node_pairs = 8, .leaf_pairs = 8, .box_rows = 32, .triangle_pairs = 64, .rechecks = 64};
 
+/// What is asked of one part before the last stage has a share of its own, on top of that stage's.
+/// It holds what most parts near contact come to (docs/measurements/gpu-fill.txt).
+inline constexpr WorkLists kFirstPartShare{
+    .node_pairs = 8, .leaf_pairs = 8, .box_rows = 32, .triangle_pairs = 192, .rechecks = 0};
+
 /// Which boxes of a halving tree are queried.
 enum class TreeForm : std::uint8_t {
     whole = 0,  // every box below the root, level by level

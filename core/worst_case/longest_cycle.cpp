@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/collision/known_answer.hpp"
+#include "core/collision/query_tree.hpp"
 #include "core/worst_case/query_deal.hpp"
 
 namespace axg {
@@ -62,6 +63,12 @@ std::uint32_t query_count(const CyclePlan& plan, const CycleShape& shape) {
         sum += stage.calls * stage.groups * stage.of_group();
     }
     return sum;
+}
+
+/// Whether the prover asks the first part of this stage alone, if of any.
+bool has_first_part(const CyclePlan& plan, const CycleShape& shape, const Stage& stage) noexcept {
+    return stage.index != 0 && stage.index + 1 == plan.stages && shape.open == 1 &&
+           stage.depth <= kTreeDepthOfParts;
 }
 
 WorkLists added(const WorkLists& a, const WorkLists& b) noexcept {
@@ -141,10 +148,18 @@ std::vector<CycleShape> cycle_shapes(const CyclePlan& plan, std::uint32_t tasks,
 }
 
 /// Which queries each call has, and which of them stay open; what they are comes later.
-void LongestCycle::plan_calls(const CyclePlan& plan, const CycleShape& shape) {
+void LongestCycle::plan_calls(const CyclePlan& plan, const CycleShape& shape,
+                              bool asks_first_part) {
     const std::vector<Stage> stages = stages_of(plan, shape);
     for (std::uint32_t i = 0; i < stages.size(); ++i) {
         const Stage& stage = stages[i];
+        if (asks_first_part && has_first_part(plan, shape, stage)) {
+            Call call;
+            call.stage = stage.index - 1;  // whose engine answers it
+            call.count = call.groups = 1;
+            call.is_first_part = true;
+            calls_.push_back(std::move(call));
+        }
         const std::uint32_t groups = stage.calls * stage.groups;
         planned_[stage.index] = {.queries = groups * stage.of_group(), .groups = groups};
         for (std::uint32_t more = 1; more < stage.calls; ++more) {  // the longer permit goes first
@@ -189,6 +204,17 @@ std::string LongestCycle::make_queries(const CyclePlan& plan, const CycleShape& 
     std::vector<std::uint32_t> taken;
     std::uint32_t stage = kStagesMax, first_group = 0;
     for (Call& call : calls_) {
+        if (call.is_first_part) {
+            std::string fault = deal_group(overflows ? twice(kFirstPartShare) : kFirstPartShare, 1,
+                                           shape.layout, deals);
+            if (!fault.empty()) {
+                return fault;
+            }
+            call.bodies.push_back(static_cast<std::uint32_t>(bodies_.trees.size()));
+            call.lists = work_of(deals.front());
+            bytes += make_bodies(deals.front(), bodies_);
+            continue;
+        }
         if (call.stage != stage) {
             stage = call.stage;
             WorkLists share = stage == 0 ? first_share_of(plan.lists[0], shape.tasks,
@@ -256,7 +282,7 @@ std::optional<LongestCycle> LongestCycle::create(const CyclePlan& plan, const Cy
         shape.open = shape.tasks;
         shape.parts = 1;
     }
-    out.plan_calls(plan, shape);
+    out.plan_calls(plan, shape, options.asks_first_part);
     fault = out.make_queries(plan, shape, options);
     if (!fault.empty()) {
         return std::nullopt;
@@ -319,6 +345,9 @@ void LongestCycle::run(std::span<const Query> queries, std::span<QueryResult> re
     }
     for (const std::uint32_t open : call.open) {
         results[open].proof = Proof::not_proven;
+    }
+    if (call.is_first_part && results[0].proof == Proof::far) {
+        is_other_ = is_other_ || groups[0].used != call.lists;
     }
     if (call.ends_stage) {
         StageWork& done = done_[call.stage];

@@ -66,6 +66,7 @@ class LongestCycle {
         std::uint32_t known_answer_mesh = 0;  // as the queries name it
         std::size_t memory_bytes = 0;  // of trees that queries do not share, at least one of a kind
         bool is_float_only = true;
+        bool asks_first_part = false;  // asks_first_part (core/certificate/staged_proof.hpp)
         LaneSet lanes = LaneSet::widest;
     };
     /// Empty, with `fault` set: lists that do not go together, no such lanes, or no memory.
@@ -97,11 +98,13 @@ class LongestCycle {
         std::uint32_t stage = 0, count = 0;
         std::uint32_t groups = 0;  // that it asks of
         bool ends_stage = false;
+        bool is_first_part = false;         // of the last stage, asked alone
+        WorkLists lists{};                  // of that: it has a share of its own
         std::vector<std::uint32_t> bodies;  // [count] the first of the two of each query
         std::vector<std::uint32_t> open;    // which results say not proven
     };
     LongestCycle() = default;
-    void plan_calls(const CyclePlan& plan, const CycleShape& shape);
+    void plan_calls(const CyclePlan& plan, const CycleShape& shape, bool asks_first_part);
     [[nodiscard]] std::string make_queries(const CyclePlan& plan, const CycleShape& shape,
                                            const Options& options);
     [[nodiscard]] bool place_trees();

@@ -108,7 +108,7 @@ CycleResult GuardChain::decide(bool ready, bool is_armed) noexcept {
 /// whose clocks fall would make the next launch late, and one that is lost is better found now.
 /// Nothing is decided by it: an engine that is lost proves nothing from then on.
 void GuardChain::keep_awake() noexcept {
-    if (stop_certificate_->work().stages > engine_.host.stages) {
+    if (stop_certificate_->work().batches != 0) {
         return;
     }
     const std::uint32_t mesh = known_answer_mesh_index(machine_);
@@ -129,7 +129,7 @@ void GuardChain::update_advisories() noexcept {
     }
     // What the certificate has left of the plan's queries, one behind the other.
     std::uint32_t queries =
-        queries_of(stop_certificate_->plan()) - stop_certificate_->work().queries;
+        queries_of(stop_certificate_->plan()) - stop_certificate_->work().planned_queries;
     if (speed_advisory_ != nullptr) {
         if (cap_guard_.is_on()) {
             speed_advisory_->update_order(engine_, *stop_certificate_, queries, cap_guard_.order());

@@ -258,6 +258,7 @@ LongestCycle::Options longest_options(const Machine& machine, const CyclePlan& p
     return {.known_answer_mesh = known_answer_mesh_index(machine),
             .memory_bytes = memory_bytes,
             .is_float_only = std::none_of(plan.lists.begin(), plan.lists.end(), has_rechecks),
+            .asks_first_part = asks_first_part(machine, plan),
             .lanes = lanes};
 }
 

@@ -55,7 +55,7 @@ struct WatchedEngine {
                                 std::span<GroupWork> groups) noexcept {
                 auto& watched = *static_cast<WatchedEngine*>(self);
                 watched.engine(queries, results, groups);
-                watched.note(results);
+                watched.note(results, groups);
             };
         }
         if (engine.run_parts != nullptr) {
@@ -74,13 +74,19 @@ struct WatchedEngine {
                         auto& watched = *static_cast<WatchedEngine*>(self);
                         const Engine::Host& host = watched.engine.host;
                         host.run_groups(host.self, queries, results, groups);
-                        watched.note(results);
+                        watched.note(results, groups);
                     }};
         return out;
     }
     void run(std::span<const Query> queries, std::span<QueryResult> results) noexcept {
         engine(queries, results);
         note(results);
+    }
+    /// Of a first part asked alone nothing: where its share is too small the stage asks it again.
+    void note(std::span<const QueryResult> results, std::span<const GroupWork> groups) noexcept {
+        if (groups.size() != 1 || groups[0].share != kFirstPartShare) {
+            note(results);
+        }
     }
     void note(std::span<const QueryResult> results) noexcept {
         work.queries = std::max(work.queries, static_cast<std::uint32_t>(results.size()));

@@ -52,7 +52,8 @@ std::optional<LongestCycle> cycle_of(const CyclePlan& plan, const CycleShape& sh
         LongestCycle::create(plan, shape,
                              {.known_answer_mesh = kKnownAnswerMesh,
                               .memory_bytes = 0,
-                              .is_float_only = plan.lists[0].rechecks == 0},
+                              .is_float_only = plan.lists[0].rechecks == 0,
+                              .asks_first_part = asks_first_part(Slides(1).machine, plan)},
                              fault);
     EXPECT_TRUE(cycle) << fault;
     return cycle;
@@ -70,6 +71,14 @@ void expect_full(const CyclePlan& plan, const CycleShape& shape) {
     EXPECT_EQ(work.known_answer_signature, kKnownAnswerSignature);
     EXPECT_EQ(work.queries, queries_of(cycle->done()));
     EXPECT_EQ(cycle->done(), cycle->planned());
+    const bool has_first_part = plan.stages > 1 && shape.open == 1 && plan.lists[0].rechecks == 0 &&
+                                cycle->done()[plan.stages - 1].groups == 1;
+    const WorkLists first_part = has_first_part ? kFirstPartShare : WorkLists{};
+    const WorkLists all = sum_of(cycle->done());
+    EXPECT_EQ(work.used,
+              (WorkLists{all.node_pairs + first_part.node_pairs,
+                         all.leaf_pairs + first_part.leaf_pairs, all.box_rows + first_part.box_rows,
+                         all.triangle_pairs + first_part.triangle_pairs, all.rechecks}));
     for (std::uint32_t i = 0; i < plan.stages; ++i) {
         const StageWork& stage = cycle->done()[i];
         if (stage.groups == 0) {  // left out
