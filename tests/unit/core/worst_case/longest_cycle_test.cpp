@@ -10,32 +10,20 @@
 #include "core/certificate/staged_proof.hpp"
 #include "core/collision/known_answer.hpp"
 #include "core/worst_case/query_deal.hpp"
+#include "tests/support/told_slides.hpp"
 
 namespace axg {
 namespace {
 
-constexpr std::uint32_t kKnownAnswerMesh = 77;
+using test::kKnownAnswerMesh;
+
 constexpr WorkLists kUsual{512, 384, 2048, 3072, 0};
 
-/// Slides along x, each past a fixed body, over boxes that can be halved without end.
-struct Slides {
-    Machine machine;
-    BodyExtent extent;
-    std::vector<JointBoxTask> tasks;
-    std::vector<JointBoxResult> results;
-
-    explicit Slides(std::uint32_t count) : tasks(count), results(count) {
-        machine.axes.resize(1);
-        machine.bodies.resize(2);
-        machine.bodies[1].joint = {0, {1, 0, 0}, {}};
-        extent.radius_mm = 1;
-        for (std::uint32_t i = 0; i < count; ++i) {
-            tasks[i].body_a = 1;
-            tasks[i].mesh_a = i + 1;
-            tasks[i].extent_a = tasks[i].extent_b = &extent;
-            tasks[i].path = path_between(machine, 1, 0);
-            tasks[i].margin_mm = 0.5;
-            tasks[i].box.half[0] = 64;
+/// Over boxes that can be halved without end.
+struct Slides : test::Slides {
+    explicit Slides(std::uint32_t count) : test::Slides(count) {
+        for (JointBoxTask& task : tasks) {
+            task.box.half[0] = 64;
         }
     }
     StagedWork prove(LongestCycle& cycle, const CyclePlan& plan, bool has_wider = false) {
