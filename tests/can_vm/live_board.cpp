@@ -9,7 +9,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -19,6 +18,7 @@
 #include "hil_replay/board/socket_clock.hpp"
 #include "hil_replay/drive/bus_drive.hpp"
 #include "tests/oracle/contact_scene.hpp"
+#include "tests/support/json_value.hpp"
 
 namespace axg::test {
 namespace {
@@ -50,7 +50,7 @@ Way draw_way(Random& random, ContactScene& scene) {
 }
 
 /// Judges wherever the axes may be too near; in between no point can have moved that far.
-nlohmann::json judge(ContactScene& scene, const std::vector<Seen>& seen) {
+Json judge(ContactScene& scene, const std::vector<Seen>& seen) {
     Judgement last;
     const Positions* at = nullptr;
     bool touches = false, too_near = false;
@@ -69,10 +69,10 @@ nlohmann::json judge(ContactScene& scene, const std::vector<Seen>& seen) {
         touches = touches || last.touches;
         too_near = too_near || last.too_near;
     }
-    return {{"touches", touches}, {"too_near", too_near}};
+    return Json::object({{"touches", touches}, {"too_near", too_near}});
 }
 
-nlohmann::json approach(Random& random, ContactScene& scene, SocketCan& wire) {
+Json approach(Random& random, ContactScene& scene, SocketCan& wire) {
     const Machine& machine = scene.machine();
     const Way way = draw_way(random, scene);
     Approach wanted;
@@ -101,17 +101,18 @@ nlohmann::json approach(Random& random, ContactScene& scene, SocketCan& wire) {
                      make_approach(machine, wanted), options, is_ended, observers);
     const DriveResult& drive = result.drive;
     if (drive.encoded.status != EncodeStatus::ok || result.wire.other_board_id != 0) {
-        return {{"fault", "the positions do not fit the frames, or another board is there"}};
+        return Json::object(
+            {{"fault", "the positions do not fit the frames, or another board is there"}});
     }
-    nlohmann::json out = judge(scene, seen);
-    out["state"] = to_text(drive.state);
-    out["why"] = to_text(drive.board_stop.why);
-    out["moved"] = drive.moving_since_us != INT64_MIN;
-    out["samples"] = drive.samples;
-    out["permits"] = drive.permits;
-    out["judged"] = seen.size();
-    out["late_us_max"] = result.wire.late_us_max;
-    out["sends_failed"] = result.wire.frames_refused;
+    Json out = judge(scene, seen);
+    out.set("state", to_text(drive.state));
+    out.set("why", to_text(drive.board_stop.why));
+    out.set("moved", drive.moving_since_us != INT64_MIN);
+    out.set("samples", drive.samples);
+    out.set("permits", drive.permits);
+    out.set("judged", seen.size());
+    out.set("late_us_max", result.wire.late_us_max);
+    out.set("sends_failed", result.wire.frames_refused);
     return out;
 }
 

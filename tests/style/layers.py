@@ -59,10 +59,14 @@ LIBRARIES = {  # library -> the only folder that may know it (tests beside)
     "nlohmann/": {"hil_replay", "firmware_if"},
     "microhttpd": {"hil_replay"},
 }
+# Tests read axg::test::Json; valijson, which judges the schema, takes nlohmann's own values.
+SCHEMA_TEST = r"tests/unit/config/text/machine_schema_test\.cpp"
+TEST_JSON = rf"tests/support/json_value\.cpp|{SCHEMA_TEST}"
 SLOW = {  # library that takes seconds to compile -> the only files that may include it
     "CLI/": re.compile(r"firmware_if/cli/command_line\.cpp"),
-    "nlohmann/json.hpp": re.compile(r"tests/.*|.*_json\.cpp"),
-    "nlohmann/": re.compile(r"tests/.*|.*_json\.[ch]pp"),
+    "nlohmann/json.hpp": re.compile(rf"{TEST_JSON}|(?!tests/).*_json\.cpp"),
+    "nlohmann/": re.compile(rf"{TEST_JSON}|(?!tests/).*_json\.[ch]pp"),
+    "valijson/": re.compile(SCHEMA_TEST),
 }
 
 

@@ -72,7 +72,11 @@ def layers_notice():
             ("firmware_if/board/x.c", '#include "firmware_if/can/y.hpp"', True),
             ("firmware_if/board/x.c", "#include <stdio.h>", True),
             ("firmware_if/can/x.cpp", "#include <stdio.h>", False),
-            ("tests/unit/x_test.cpp", "#include <nlohmann/json.hpp>", False),
+            ("tests/support/json_value.cpp", "#include <nlohmann/json.hpp>", False),
+            ("tests/support/json_value.hpp", "#include <nlohmann/json_fwd.hpp>", True),
+            ("tests/unit/x_test.cpp", "#include <nlohmann/json.hpp>", True),
+            ("tests/unit/x/x_json.cpp", "#include <nlohmann/json.hpp>", True),
+            ("tests/unit/x_test.cpp", "#include <valijson/validator.hpp>", True),
             ("firmware_if/cli/x.cpp", '#include "config/a/x.hpp"', False),
             ("firmware_if/cli/x.cpp", '#include "hil_replay/x.hpp"', True)]:
         expect(f"layers: {name}: {line}",

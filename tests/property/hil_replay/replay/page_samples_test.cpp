@@ -7,11 +7,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <random>
 #include <vector>
 
 #include "hil_replay/page/run_page.hpp"
+#include "tests/support/json_value.hpp"
 #include "tests/support/seed.hpp"
 
 namespace axg::test {
@@ -197,12 +197,12 @@ TEST(RunPage, NoNameClosesTheScriptThatHoldsTheData) {
     const RunPage page{loaded, samples, nullptr, 500, "</script><b>", "\xff words", "[]"};
     const std::string text = page_data(page);
     EXPECT_EQ(text.find('<'), std::string::npos);
-    const auto data = nlohmann::json::parse(text);
+    const auto data = Json::parse(text);
     EXPECT_EQ(data["title"], "</script><b>");
     EXPECT_EQ(data["machine"]["bodies"][1]["name"], "b</script>");
     EXPECT_EQ(data["samples"]["rows"], 0);
     // Each corner once; the float as it is.
-    EXPECT_EQ(data["body_meshes"][0]["corners"], nlohmann::json({0, 1, 2, 1, 0, 3}));
+    EXPECT_EQ(data["body_meshes"][0]["corners"], Json::array({0, 1, 2, 1, 0, 3}));
     EXPECT_EQ(data["body_meshes"][0]["points"][3].get<float>(), 0.1F);
 }
 

@@ -6,10 +6,10 @@
 
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "firmware_if/axguardd/run_command.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
+#include "tests/support/json_value.hpp"
 #include "tests/support/replay_fixture.hpp"
 
 namespace axg {
@@ -36,11 +36,11 @@ class Admit : public testing::Test {
         words.insert(words.end(), more.begin(), more.end());
         return run_axguardd(words);
     }
-    static nlohmann::json read(const std::string& path) {
-        return nlohmann::json::parse(test::content_of(path));
+    static test::Json read(const std::string& path) {
+        return test::Json::parse(test::content_of(path));
     }
     [[nodiscard]] std::string verdict_path() const { return shop.file("nocan9.admission.json"); }
-    static nlohmann::json check(const nlohmann::json& verdict, const std::string& name) {
+    static test::Json check(const test::Json& verdict, const std::string& name) {
         for (const auto& one : verdict["checks"]) {
             if (one["check"] == name) {
                 return one;
@@ -54,7 +54,7 @@ class Admit : public testing::Test {
 
 TEST_F(Admit, TheVerdictIsStoredWithWhoseItIs) {
     EXPECT_EQ(admit({}), kExitUnfit);
-    const nlohmann::json verdict = read(verdict_path());
+    const test::Json verdict = read(verdict_path());
     EXPECT_EQ(verdict, read(shop.file("said.json")));
     EXPECT_FALSE(verdict["fit"].get<bool>());
     EXPECT_FALSE(verdict["admitted"].get<bool>());
@@ -67,7 +67,7 @@ TEST_F(Admit, TheVerdictIsStoredWithWhoseItIs) {
     for (const char* const key : {"version", "host", "kernel", "date", "verdict"}) {
         EXPECT_NE(verdict[key], "") << key;
     }
-    const nlohmann::json& cycles = verdict["figures"]["cycles"];
+    const test::Json& cycles = verdict["figures"]["cycles"];
     EXPECT_EQ(cycles["count"], 128);
     EXPECT_GT(cycles["proven_count"], 10) << "of the positions of this machine many are clear";
     EXPECT_LT(cycles["proven_count"], 120) << "and many are not: those take the whole budget";
@@ -80,7 +80,7 @@ TEST_F(Admit, TheVerdictIsStoredWithWhoseItIs) {
 
 TEST_F(Admit, InContactModeTheSampledPosesAreQueried) {
     EXPECT_EQ(admit({"--mode", "contact"}), kExitUnfit);
-    const nlohmann::json cycles = read(verdict_path())["figures"]["cycles"];
+    const test::Json cycles = read(verdict_path())["figures"]["cycles"];
     EXPECT_EQ(cycles["questions_max"], 0);
     EXPECT_GT(cycles["proven_count"], 10);
     EXPECT_GT(cycles["proven_us"], 0);

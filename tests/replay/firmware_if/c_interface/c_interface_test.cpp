@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // The C interface as another process meets it: the example in C stops where `axguard replay` stops;
 // every call says by its code what it was given; what the process leaves undone stops the guard.
-#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "tests/support/c_host.hpp"
 #include "tests/support/drive_text.hpp"
+#include "tests/support/json_value.hpp"
 #include "tests/support/simulated_frames.hpp"
 
 namespace axg {
 namespace {
 
 /// The sample of the first stop, its reason and pair, as the example prints them.
-std::string stop_line(const nlohmann::json& stop) {
-    std::string pair = stop["pair"];
+std::string stop_line(const test::Json& stop) {
+    auto pair = stop["pair"].get<std::string>();
     pair.replace(pair.find('-'), 1, " - ");
     return "stopped at " + std::to_string(stop["time_us"].get<std::int64_t>()) +
            " us: verdict: " + stop["reason"].get<std::string>() + ": " + pair + "\n";
@@ -34,8 +34,7 @@ TEST(CInterface, TheExampleInCStopsAtTheSampleWhereReplayDoes) {
                            " --deadline-us 10000000 --json=stops.json"),
                   10)
             << shop.err;
-        const auto stops =
-            nlohmann::json::parse(test::content_of(shop.file("stops.json")))["stops"];
+        const auto stops = test::Json::parse(test::content_of(shop.file("stops.json")))["stops"];
         const std::string command = "'" + example + "' '" + test::kPaperMachine + "' '" +
                                     shop.file("t.log") + "' " + mode + " >'" + shop.file("said") +
                                     "'";

@@ -5,10 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "firmware_if/protocol/guard_frames.hpp"
+#include "tests/support/json_value.hpp"
 #include "tests/support/machine_text.hpp"
 #include "tests/support/replay_fixture.hpp"
 
@@ -66,8 +66,7 @@ TEST(LiveExchange, IsReplayedToTheSamePermitsAndTheSameStopOrALaterOne) {
                        " --frames-out out.log"),
               10)
         << shop.err;
-    const auto stop =
-        nlohmann::json::parse(test::content_of(shop.file("stops.json")))["stops"].at(0);
+    const auto stop = test::Json::parse(test::content_of(shop.file("stops.json")))["stops"].at(0);
     // The guard that recorded it proved less, so it stopped some samples earlier.
     EXPECT_GE(stop["time_us"], live.sample_us);
     EXPECT_LE(stop["time_us"], live.sample_us + 8 * 2000);

@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "firmware_if/cli/exit_codes.hpp"
+#include "tests/support/json_value.hpp"
 #include "tests/support/replay_fixture.hpp"
 
 namespace axg {
@@ -56,9 +56,7 @@ class CompiledCommand : public testing::Test {
     static std::string content(const std::string& name) {
         return test::content_of(shop->file(name));
     }
-    static nlohmann::json document(const std::string& name) {
-        return nlohmann::json::parse(content(name));
-    }
+    static test::Json document(const std::string& name) { return test::Json::parse(content(name)); }
     static std::unique_ptr<test::Workshop> shop;
 };
 
@@ -84,12 +82,12 @@ TEST_F(CompiledCommand, TheSimulatedTraceIsTheSame) {
 
 TEST_F(CompiledCommand, CheckSaysWhatItWasCompiledFromAndFindsTheSame) {
     ASSERT_EQ(shop->run("check paper.axg --json=check.axg.json"), kExitClean) << shop->err;
-    nlohmann::json compiled = document("check.axg.json"), read = document("check.yaml.json");
+    test::Json compiled = document("check.axg.json"), read = document("check.yaml.json");
     EXPECT_EQ(compiled["compiled_from"], "paper.yaml");
     EXPECT_EQ(compiled["configuration_sha256"], read["configuration_sha256"]);
     EXPECT_EQ(compiled["hashes"], read["hashes"]);
     compiled.erase("compiled_from");
-    compiled["file"] = read["file"];
+    compiled.set("file", read["file"]);
     EXPECT_EQ(compiled, read);
     ASSERT_EQ(shop->run("check paper.axg"), kExitClean);
     EXPECT_NE(shop->out.find("compiled from paper.yaml\n"), std::string::npos) << shop->out;
@@ -102,7 +100,7 @@ TEST_F(CompiledCommand, OtherCommandsTakeItAsWell) {
 }
 
 TEST_F(CompiledCommand, TellsWhatItWrote) {
-    const nlohmann::json said = document("compiled.json");
+    const test::Json said = document("compiled.json");
     EXPECT_EQ(said["compiled_from"], "paper.yaml");
     EXPECT_EQ(said["bytes"], content("paper.axg").size());
     EXPECT_GT(said["triangles"], 100);

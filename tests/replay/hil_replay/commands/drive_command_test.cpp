@@ -4,15 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <string>
 
+#include "tests/support/json_value.hpp"
 #include "tests/support/replay_fixture.hpp"
 
 namespace axg::test {
 namespace {
-
-using nlohmann::json;
 
 // Up and down in free air: no part of the paper's machine is near another.
 constexpr const char* kFreeAir = "G0 Z-20\nG0 Z0 X30\nG0 C90\nM2\n";
@@ -22,7 +20,7 @@ class DriveCommand : public testing::Test {
     int drive(const std::string& program, const std::string& options) {
         return shop.run("drive '" + kPaperMachine + "' '" + program + "' " + options);
     }
-    json document() { return json::parse(shop.out); }
+    Json document() { return Json::parse(shop.out); }
 
     Workshop shop;
     std::string free_air = shop.write("free.ngc", kFreeAir);
@@ -31,7 +29,7 @@ class DriveCommand : public testing::Test {
 TEST_F(DriveCommand, AProgramInFreeAirRunsToItsEnd) {
     for (const std::string mode : {"contact", "stoppable"}) {
         ASSERT_EQ(drive(free_air, "--json --mode " + mode), 0) << shop.err;
-        const json result = document();
+        const Json result = document();
         EXPECT_EQ(result["state"], "finished");
         EXPECT_EQ(result["mode"], mode);
         EXPECT_NEAR(result["rest"]["X_mm"].get<double>(), 30, 1e-9);
@@ -43,20 +41,20 @@ TEST_F(DriveCommand, AProgramInFreeAirRunsToItsEnd) {
 
 TEST_F(DriveCommand, TheDemoIsStoppedAndSaysWhereAndHowFarFromContact) {
     ASSERT_EQ(drive(kDemoProgram, "--json"), 10) << shop.err;
-    const json result = document();
+    const Json result = document();
     EXPECT_EQ(result["state"], "stopped");
     EXPECT_EQ(result["guard_stop"]["reason"], "predicted");
     ASSERT_FALSE(result["pairs"].empty());
-    for (const json& pair : result["pairs"]) {
+    for (const Json& pair : result["pairs"]) {
         EXPECT_FALSE(pair["touching"].get<bool>()) << pair;
     }
     ASSERT_FALSE(result["escapes"].empty());
-    for (const json& way : result["escapes"]) {
+    for (const Json& way : result["escapes"]) {
         EXPECT_GT(way["clearance_mm"], result["pairs"][0]["clearance_mm"]) << way;
     }
     EXPECT_TRUE(
         std::any_of(result["escapes"].begin(), result["escapes"].end(),
-                    [](const json& way) { return way["axis"] == "Z" && way["direction"] == "+"; }))
+                    [](const Json& way) { return way["axis"] == "Z" && way["direction"] == "+"; }))
         << "the cutter goes up";
     // The block whose target lies beyond the stop.
     EXPECT_EQ(result["program_block"].get<std::string>().rfind("G1 X0.0000 Y105.7850 ", 0), 0U)
@@ -82,7 +80,7 @@ TEST_F(DriveCommand, OutOfAMarginLeadsAJog) {
                  "' --json --jog-out --start \"X40 Z-259.7\""),
         10)
         << shop.err;
-    const json result = document();
+    const Json result = document();
     EXPECT_EQ(result["state"], "waiting");
     ASSERT_EQ(result["jogs"].size(), 1U) << result;
     EXPECT_EQ(result["jogs"][0]["axis"], "Z");
@@ -97,10 +95,10 @@ TEST_F(DriveCommand, OutOfAMarginLeadsAJog) {
 // The paper's way of judging is too late: the machine touches before it stands.
 TEST_F(DriveCommand, ContactModeStopsTheDemoTooLate) {
     ASSERT_EQ(drive(kDemoProgram, "--json --mode contact"), 10) << shop.err;
-    const json result = document();
+    const Json result = document();
     EXPECT_EQ(result["guard_stop"]["reason"], "contact");
     bool touches = false;
-    for (const json& pair : result["pairs"]) {
+    for (const Json& pair : result["pairs"]) {
         touches = touches || pair["touching"].get<bool>();
     }
     EXPECT_TRUE(touches);
@@ -170,9 +168,10 @@ TEST_F(DriveCommand, TheSameSeedGivesTheSameBytes) {
 // stopped.
 TEST_F(DriveCommand, TheTimeThatTheCapCostsIsReported) {
     ASSERT_EQ(drive(free_air, "--json --obey-cap"), 0) << shop.err;
-    const json result = document();
+    const Json result = document();
     EXPECT_GT(result["speed_cap_least"], 0);
-    const double seconds = result["machine_s"], free_s = result["machine_s_without_cap"];
+    const auto seconds = result["machine_s"].get<double>();
+    const auto free_s = result["machine_s_without_cap"].get<double>();
     EXPECT_GT(free_s, 0.5);
     EXPECT_GT(seconds, free_s - 2e-3);
     EXPECT_NEAR(result["rest"]["C_deg"].get<double>(), 90, 1e-9);
@@ -187,7 +186,7 @@ TEST_F(DriveCommand, WhoObeysTheCapGetsNearerToTheObstacle) {
     const std::string down = shop.write("down.ngc", "G0 X60 Y60\nG1 Z-270 F10000\nM2\n");
     const auto clearance_mm = [this, &down](const std::string& options) {
         EXPECT_EQ(drive(down, "--json " + options), 10) << shop.err;
-        const json result = document();
+        const Json result = document();
         EXPECT_EQ(result["guard_stop"]["reason"], "predicted");
         return result["pairs"][0]["clearance_mm"].get<double>();
     };
@@ -202,7 +201,7 @@ TEST_F(DriveCommand, WhoObeysTheCapGetsNearerToTheObstacle) {
 TEST_F(DriveCommand, ABoardIsSlowWhereThePermitSaysSo) {
     const std::string dip = shop.write("dip.ngc", "G0 X60 Y60\nG1 Z-200 F10000\nG0 Z0\nM2\n");
     ASSERT_EQ(drive(dip, "--json --csv plain.csv"), 0) << shop.err;
-    const double plain_s = document()["machine_s"];
+    const auto plain_s = document()["machine_s"].get<double>();
     EXPECT_FALSE(document().contains("samples_slow"));
     std::string text = content_of(kPaperMachine);
     const auto levels = [&](const std::string& words) {
@@ -215,7 +214,7 @@ TEST_F(DriveCommand, ABoardIsSlowWhereThePermitSaysSo) {
         return shop.run("drive '" + levels(words) + "' '" + dip + "' --json --csv levels.csv");
     };
     ASSERT_EQ(run("slow_mm: 120, warn_mm: 150"), 0) << shop.err;
-    const json slow = document();
+    const Json slow = document();
     EXPECT_GT(slow["samples_slow"].get<int>(), 100);
     EXPECT_GT(slow["machine_s"].get<double>(), plain_s * 1.1);
     const std::string table = content_of(shop.file("levels.csv"));

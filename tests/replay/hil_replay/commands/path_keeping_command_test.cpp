@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "firmware_if/cli/exit_codes.hpp"
+#include "tests/support/json_value.hpp"
 #include "tests/support/machine_text.hpp"
 #include "tests/support/replay_fixture.hpp"
 
@@ -37,8 +37,8 @@ class PathKeepingCommand : public testing::Test {
     int replay(const std::string& machine, const std::string& trace, const std::string& json) {
         return run("replay", machine, trace + " --deadline-us 10000000 --json=" + json);
     }
-    nlohmann::json document(const std::string& name) {
-        return nlohmann::json::parse(test::content_of(shop.file(name)));
+    test::Json document(const std::string& name) {
+        return test::Json::parse(test::content_of(shop.file(name)));
     }
     test::Workshop shop;
 };

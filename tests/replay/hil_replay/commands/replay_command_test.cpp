@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <vector>
 
@@ -16,6 +15,7 @@
 #include "firmware_if/protocol/guard_frames.hpp"
 #include "firmware_if/protocol/handshake.hpp"
 #include "tests/support/board_fixture.hpp"
+#include "tests/support/json_value.hpp"
 #include "tests/support/machine_text.hpp"
 #include "tests/support/replay_fixture.hpp"
 
@@ -59,7 +59,7 @@ std::unique_ptr<test::Workshop> ReplayCommand::shop;
 // The block's target, by hand: the stop lies between it and the block before.
 TEST_F(ReplayCommand, AStopNamesItsProgramLineAndBlock) {
     EXPECT_EQ(replay("demo.log --json=lines.json"), kExitCollision) << shop->err;
-    const auto document = nlohmann::json::parse(test::content_of(shop->file("lines.json")));
+    const auto document = test::Json::parse(test::content_of(shop->file("lines.json")));
     const auto& stop = document["stops"][0];
     std::istringstream program(test::content_of(test::kDemoProgram));
     std::string block;
@@ -171,7 +171,7 @@ TEST_F(ReplayCommand, HashesOfTheTraceAreComparedAndTheOthersTaken) {
         const std::string words = fmt::format("hashes: the trace contains {} of 4;", parts);
         EXPECT_EQ(shop->out.find(words) != std::string::npos, parts != 4) << shop->out;
         EXPECT_EQ(replay("hashes.log --json"), kExitClean) << shop->err;
-        EXPECT_EQ(nlohmann::json::parse(shop->out)["hashes_compared"], parts);
+        EXPECT_EQ(test::Json::parse(shop->out)["hashes_compared"], parts);
     }
     hashes.of[2] += 1;
     (void)shop->write("hashes.log", with_hashes(trace, hashes, 4));
@@ -186,7 +186,7 @@ TEST_F(ReplayCommand, WithoutHashesInTheFileNothingIsSaidOfThem) {
                         " --mode contact brief.log --json"),
               kExitClean)
         << shop->err;
-    EXPECT_FALSE(nlohmann::json::parse(shop->out).contains("hashes_compared"));
+    EXPECT_FALSE(test::Json::parse(shop->out).contains("hashes_compared"));
 }
 
 // simulate may be told another kind of frame and another period than the machine file says; the
@@ -208,7 +208,7 @@ TEST_F(ReplayCommand, ADeadlineNoProcessorKeepsIsCountedAndInRealTimeExit11) {
     EXPECT_NE(shop->out.find("counted, not judged"), std::string::npos) << shop->out;
     EXPECT_EQ(replay("demo.log --deadline-us 1"), kExitCollision);
     EXPECT_EQ(replay("brief.log --deadline-us 1 --realtime --json"), kExitDeadline) << shop->err;
-    EXPECT_EQ(nlohmann::json::parse(shop->out)["permits"], 0) << "late is late";
+    EXPECT_EQ(test::Json::parse(shop->out)["permits"], 0) << "late is late";
 }
 
 TEST_F(ReplayCommand, ATraceThatCannotBeJudgedIsExit12) {
@@ -273,13 +273,13 @@ TEST_F(ReplayCommand, TheTableIsTheSameBytesTwiceAndHasALineASample) {
               "sample,latched_us,arrived_us,X_mm,Y_mm,Z_mm,A_deg,C_deg,tool,permit,reason,"
               "not_proven,cutter-x_mm,cutter-y_mm,cutter-a_mm,cutter-c_mm,z-x_mm,z-y_mm,z-a_mm,"
               "z-c_mm");
-    const auto document = nlohmann::json::parse(test::content_of(shop->file("one.json")));
+    const auto document = test::Json::parse(test::content_of(shop->file("one.json")));
     EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), document["samples"].get<long>() + 1);
 }
 
 TEST_F(ReplayCommand, TheTableAndTheReportTellOfTheSameStop) {
     ASSERT_EQ(replay("demo.log --keep-going --csv all.csv --json=all.json"), kExitCollision);
-    const auto document = nlohmann::json::parse(test::content_of(shop->file("all.json")));
+    const auto document = test::Json::parse(test::content_of(shop->file("all.json")));
     std::istringstream table(test::content_of(shop->file("all.csv")));
     std::string line;
     std::getline(table, line);
@@ -299,14 +299,14 @@ TEST_F(ReplayCommand, TheTableAndTheReportTellOfTheSameStop) {
     }
     EXPECT_EQ(told, contacts);
     ASSERT_EQ(replay("demo.log --json=first.json"), kExitCollision);
-    const auto first = nlohmann::json::parse(test::content_of(shop->file("first.json")));
+    const auto first = test::Json::parse(test::content_of(shop->file("first.json")));
     EXPECT_EQ(first["stops"].size(), 1U);
     EXPECT_EQ(first["stops"][0]["time_us"], document["stops"][0]["time_us"]);
 }
 
 TEST_F(ReplayCommand, JsonHasTheKeysThatOtherProgramsRead) {
     ASSERT_EQ(replay("demo.log --json"), kExitCollision) << shop->err;
-    const auto document = nlohmann::json::parse(shop->out);
+    const auto document = test::Json::parse(shop->out);
     for (const char* const key :
          {"trace", "machine", "mode", "engine", "lanes", "frames", "samples", "samples_lost",
           "permits", "deadline_us", "overruns", "receiver_faults", "pairs", "cycle", "slowest",
@@ -407,24 +407,24 @@ TEST_F(ReplayCommand, ATraceThatEndsInMotionSaysWhenTheGuardWouldHaveStopped) {
     EXPECT_NE(shop->out.find("THE TRACE ENDS IN MOTION at"), std::string::npos) << shop->out;
     EXPECT_EQ(shop->out.find("no stop"), std::string::npos) << shop->out;
     EXPECT_EQ(replay("half.log --deadline-us 1000000 --json"), kExitClean);
-    const auto ends = nlohmann::json::parse(shop->out)["ends_in_motion"];
+    const auto ends = test::Json::parse(shop->out)["ends_in_motion"];
     EXPECT_GT(ends["stop_us"], ends["time_us"]);
     EXPECT_LT(ends["stop_us"], ends["time_us"].get<std::int64_t>() + 5000);
-    EXPECT_TRUE(nlohmann::json::parse(shop->out)["receiver_faults"].empty())
+    EXPECT_TRUE(test::Json::parse(shop->out)["receiver_faults"].empty())
         << "what would follow is not the trace's";
     // One foreign frame much later: the stop is dated when the guard would have stopped.
     (void)shop->write("late.log", whole.substr(0, to) + "(0000000900.000000) can0 7AA#00\n");
     EXPECT_EQ(replay("late.log --deadline-us 1000000 --json"), kExitCollision);
-    const auto stop = nlohmann::json::parse(shop->out)["stops"][0];
+    const auto stop = test::Json::parse(shop->out)["stops"][0];
     EXPECT_EQ(stop["time_us"], ends["stop_us"]);
 }
 
 TEST_F(ReplayCommand, TheGuardIsArmedWhenToldTo) {
     EXPECT_EQ(replay("brief.log --json"), kExitClean);
-    const auto at_once = nlohmann::json::parse(shop->out);
+    const auto at_once = test::Json::parse(shop->out);
     const double later_s = at_once["armed_us"].get<double>() * 1e-6 + 0.5;
     EXPECT_EQ(replay(fmt::format("brief.log --json --arm-at {}", later_s)), kExitClean);
-    const auto later = nlohmann::json::parse(shop->out);
+    const auto later = test::Json::parse(shop->out);
     EXPECT_GE(later["armed_us"].get<double>() * 1e-6, later_s);
     EXPECT_LT(later["permits"], at_once["permits"]);
 }
@@ -432,7 +432,7 @@ TEST_F(ReplayCommand, TheGuardIsArmedWhenToldTo) {
 // A machine that got no permit did not move, whatever was proven.
 TEST_F(ReplayCommand, ATraceWithoutAPermitIsNotClear) {
     EXPECT_EQ(replay("brief.log --json --arm-at 100000"), kExitCollision);
-    EXPECT_EQ(nlohmann::json::parse(shop->out)["permits"], 0);
+    EXPECT_EQ(test::Json::parse(shop->out)["permits"], 0);
     EXPECT_EQ(replay("brief.log --arm-at 100000"), kExitCollision);
     EXPECT_NE(shop->out.find("never armed: --arm-at is after"), std::string::npos) << shop->out;
     EXPECT_EQ(shop->out.find("no stop"), std::string::npos) << shop->out;
@@ -445,7 +445,7 @@ TEST_F(ReplayCommand, ATraceWithoutAPermitIsNotClear) {
 // Lateness that is judged ends with 11, the cycle that stopped the guard counted and listed.
 TEST_F(ReplayCommand, ALateCycleThatStopsIsLate) {
     EXPECT_EQ(replay("brief.log --json --realtime --deadline-us 1"), kExitDeadline) << shop->out;
-    const auto document = nlohmann::json::parse(shop->out);
+    const auto document = test::Json::parse(shop->out);
     EXPECT_GT(document["overruns"], 0);
     EXPECT_EQ(document["permits"], 0);
 }
@@ -456,7 +456,7 @@ TEST_F(ReplayCommand, FramesOfAGuardTellTheTime) {
     const std::size_t to = whole.find('\n', whole.size() / 2) + 1;
     (void)shop->write("heard.log", whole.substr(0, to) + "(0000000900.000000) can0 702#05\n");
     EXPECT_EQ(replay("heard.log --json"), kExitCollision);
-    const auto document = nlohmann::json::parse(shop->out);
+    const auto document = test::Json::parse(shop->out);
     EXPECT_EQ(document["guard_frames"], 1);
     EXPECT_LT(document["stops"][0]["time_us"], 900'000'000);
 }

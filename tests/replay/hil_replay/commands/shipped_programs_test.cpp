@@ -8,11 +8,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 
 #include "firmware_if/cli/exit_codes.hpp"
+#include "tests/support/json_value.hpp"
 #include "tests/support/machine_text.hpp"
 #include "tests/support/replay_fixture.hpp"
 
@@ -86,7 +86,7 @@ class ShippedProgram : public testing::TestWithParam<Shipped> {
                            " trace.log --engine cpu --deadline-us 10000000 --json=end.json"),
                   stops ? kExitCollision : kExitClean)
             << shop.out << shop.err;
-        const auto all = nlohmann::json::parse(content_of(shop.file("end.json")));
+        const auto all = Json::parse(content_of(shop.file("end.json")));
         ASSERT_EQ(all["stops"].size(), stops ? 1U : 0U) << "one entry a stop";
         EXPECT_EQ(all["stop_count"], stops ? 1 : 0);
         if (stops) {

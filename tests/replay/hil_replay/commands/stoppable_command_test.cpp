@@ -6,12 +6,12 @@
 
 #include <algorithm>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/protocol/guard_frames.hpp"
 #include "firmware_if/protocol/hints_frame.hpp"
+#include "tests/support/json_value.hpp"
 #include "tests/support/replay_fixture.hpp"
 
 namespace axg {
@@ -42,8 +42,8 @@ class StoppableCommand : public testing::Test {
         return shop->run("replay " + (machine.empty() ? test::kPaperMachine : machine) +
                          " --deadline-us 10000000 " + arguments);
     }
-    static nlohmann::json document(const std::string& name) {
-        return nlohmann::json::parse(test::content_of(shop->file(name)));
+    static test::Json document(const std::string& name) {
+        return test::Json::parse(test::content_of(shop->file(name)));
     }
     static std::unique_ptr<test::Workshop> shop;
 };
@@ -173,7 +173,8 @@ TEST_F(StoppableCommand, ClearanceLevelsAreReportedAndChangeNoPermit) {
         }
         EXPECT_EQ(plain["stops"][0]["time_us"], levels["stops"][0]["time_us"]);
         EXPECT_FALSE(plain.contains("levels"));
-        const long slow = levels["levels"]["slow"], warn = levels["levels"]["warn"];
+        const auto slow = levels["levels"]["slow"].get<long>();
+        const auto warn = levels["levels"]["warn"].get<long>();
         EXPECT_GT(slow, 0);
         EXPECT_GT(warn, 0);
         EXPECT_GE(levels["pairs"]["cutter-c"]["slow"].get<long>(), 1);

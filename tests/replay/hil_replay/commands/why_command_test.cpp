@@ -6,17 +6,15 @@
 #include <gtest/gtest.h>
 
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <regex>
 #include <string>
 
 #include "firmware_if/cli/exit_codes.hpp"
+#include "tests/support/json_value.hpp"
 #include "tests/support/replay_fixture.hpp"
 
 namespace axg::test {
 namespace {
-
-using Json = nlohmann::json;
 
 class WhyCommand : public testing::Test {
   protected:

@@ -7,19 +7,17 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 
 #include "config/mesh/simplify_meshes.hpp"
 #include "core/mesh/stl.hpp"
+#include "tests/support/json_value.hpp"
 #include "tests/support/replay_fixture.hpp"
 #include "tests/support/round_solids.hpp"
 
 namespace axg::test {
 namespace {
-
-using nlohmann::json;
 
 /// A ball of 4,800 triangles under a pin that comes down beside or onto it. Lists that no model
 /// fills.
@@ -58,11 +56,11 @@ class CheckPlan : public testing::Test {
         text.replace(text.find("@SIMPLIFY@"), 10, key);
         (void)shop_.write(name, text.replace(text.find("@LINES@"), 7, lines));
     }
-    json report_of(const std::string& command, int wanted) {
+    Json report_of(const std::string& command, int wanted) {
         EXPECT_EQ(shop_.run(command + " --json=r.json"), wanted) << shop_.out << shop_.err;
-        return json::parse(content_of(shop_.file("r.json")));
+        return Json::parse(content_of(shop_.file("r.json")));
     }
-    json plan_of(const std::string& options) {
+    Json plan_of(const std::string& options) {
         return report_of("check whole.yaml --plan --positions 60 --passes 1 " + options, 0)
             .at("plan");
     }
@@ -79,14 +77,14 @@ class CheckPlan : public testing::Test {
 };
 
 TEST_F(CheckPlan, ModelsGetCoarserAndTheCoarsestThatLosesNothingIsChosen) {
-    const json plan = plan_of("--out plan");
-    const json& models = plan.at("models");
+    const Json plan = plan_of("--out plan");
+    const Json& models = plan.at("models");
     ASSERT_GE(models.size(), 3U);
     EXPECT_EQ(models.at(0).at("simplify_mm"), 0);
     EXPECT_EQ(models.at(0).at("inflation_mm"), 0);
     EXPECT_GT(models.at(0).at("triangles"), 4800);  // the ball, and the pin
     for (std::size_t i = 0; i < models.size(); ++i) {
-        const json& model = models.at(i);
+        const Json& model = models.at(i);
         EXPECT_LE(model.at("inflation_mm"), 2 * model.at("simplify_mm").get<double>());
         EXPECT_EQ(model.at("contact_us").at("cycles"), 60);
         EXPECT_EQ(model.at("rest_us").at("cycles"), 60);
@@ -101,7 +99,7 @@ TEST_F(CheckPlan, ModelsGetCoarserAndTheCoarsestThatLosesNothingIsChosen) {
     }
     ASSERT_GT(plan.at("approaches"), 0);
     EXPECT_GT(models.back().at("earlier_mm").at("p50"), 0);  // the price is seen
-    const json& chosen = models.at(plan.at("chosen").get<std::size_t>());
+    const Json& chosen = models.at(plan.at("chosen").get<std::size_t>());
     EXPECT_GT(plan.at("chosen"), 0);
     EXPECT_EQ(chosen.at("contact_lost"), 0);
     EXPECT_EQ(chosen.at("rest_lost"), 0);
@@ -116,18 +114,18 @@ TEST_F(CheckPlan, ModelsGetCoarserAndTheCoarsestThatLosesNothingIsChosen) {
 TEST_F(CheckPlan, TheLinesLoadAndLoseNothingOfTheTrace) {
     (void)shop_.write("clear.ngc", "G21 G90\nG1 X70 F6000\nG1 Z-90 F6000\nG1 Z-20 F6000\nM2\n");
     ASSERT_EQ(shop_.run("simulate whole.yaml clear.ngc -o clear.log"), 0) << shop_.err;
-    const json plan = plan_of("--trace clear.log");
-    const json& chosen = plan.at("models").at(plan.at("chosen").get<std::size_t>());
+    const Json plan = plan_of("--trace clear.log");
+    const Json& chosen = plan.at("models").at(plan.at("chosen").get<std::size_t>());
     ASSERT_GT(plan.at("chosen"), 0);
     EXPECT_GT(chosen.at("trace_us").at("cycles"), 1000);
     EXPECT_EQ(chosen.at("trace_lost"), 0);
     write("planned.yaml", ", " + line_of("simplify_mm: "), line_of("capacities: ") + "\n");
-    const json check = report_of("check planned.yaml", 0);
+    const Json check = report_of("check planned.yaml", 0);
     EXPECT_EQ(check.at("engine").at("node_pairs"), plan.at("capacities").at("node_pairs"));
     ASSERT_EQ(check.at("notes").size(), 1U) << "the mesh is simplified";
     const std::string replay = " clear.log --keep-going --deadline-us 10000000 --engine cpu";
-    const json whole = report_of("replay whole.yaml" + replay, 0);
-    const json planned = report_of("replay planned.yaml" + replay, 0);
+    const Json whole = report_of("replay whole.yaml" + replay, 0);
+    const Json planned = report_of("replay planned.yaml" + replay, 0);
     EXPECT_GT(whole.at("permits"), 1000);
     EXPECT_EQ(planned.at("permits"), whole.at("permits"));
     EXPECT_EQ(planned.at("stop_count"), 0);
@@ -136,7 +134,7 @@ TEST_F(CheckPlan, TheLinesLoadAndLoseNothingOfTheTrace) {
 /// Every result that is counted as lost has its line, and lies where the ball is just far enough:
 /// of surfaces, so inside it, too.
 TEST_F(CheckPlan, WhatIsLostIsListed) {
-    const json plan =
+    const Json plan =
         report_of("check whole.yaml --plan --positions 2000 --passes 1 --out plan", 0).at("plan");
     std::istringstream csv(content_of(shop_.file("plan/lost.csv")));
     std::string line;
@@ -161,7 +159,7 @@ TEST_F(CheckPlan, WhatIsLostIsListed) {
         at_rest += is_contact ? 0 : 1;
     }
     std::size_t lost = 0, rest_lost = 0;
-    for (const json& model : plan.at("models")) {
+    for (const Json& model : plan.at("models")) {
         char name[16];
         std::snprintf(name, sizeof name, "%g", model.at("simplify_mm").get<double>());
         EXPECT_EQ(contacts[name], model.at("contact_lost")) << name;
@@ -181,13 +179,13 @@ TEST_F(CheckPlan, PlannedThenCompiled) {
     (void)plan_of("--trace clear.log");
     write("planned.yaml", ", " + line_of("simplify_mm: "), line_of("capacities: ") + "\n");
     ASSERT_EQ(shop_.run("compile planned.yaml -o planned.axg"), 0) << shop_.err;
-    const json read = report_of("check planned.yaml", 0),
+    const Json read = report_of("check planned.yaml", 0),
                compiled = report_of("check planned.axg", 0);
     EXPECT_EQ(compiled.at("configuration_sha256"), read.at("configuration_sha256"));
     EXPECT_EQ(compiled.at("notes"), read.at("notes"));
     EXPECT_EQ(compiled.at("engine"), read.at("engine"));
     const std::string replay = " clear.log --keep-going --deadline-us 10000000 --engine cpu";
-    const json whole = report_of("replay whole.yaml" + replay, 0);
+    const Json whole = report_of("replay whole.yaml" + replay, 0);
     EXPECT_GT(whole.at("permits"), 1000);
     EXPECT_EQ(report_of("replay planned.axg" + replay, 0).at("permits"), whole.at("permits"));
 }

@@ -10,7 +10,6 @@
 #include <deque>
 #include <functional>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "config/machine/effective_text.hpp"
 #include "firmware_if/axguardd/black_box_dump.hpp"
@@ -19,6 +18,7 @@
 #include "firmware_if/guard/live_engine.hpp"
 #include "firmware_if/protocol/handshake.hpp"
 #include "tests/support/can_board.hpp"
+#include "tests/support/json_value.hpp"
 #include "tests/support/operator_panel.hpp"
 #include "tests/support/replay_fixture.hpp"
 #include "tests/support/test_wire.hpp"
@@ -208,7 +208,7 @@ class BlackBoxReplayTest : public testing::Test {
         world->run_until(world->wire.now_us + 20'000);
     }
     /// Writes the dump and has the program replay it: its document.
-    nlohmann::json replay(int wanted_code, const std::string& more = "") {
+    test::Json replay(int wanted_code, const std::string& more = "") {
         std::string fault;
         const std::string path = write_black_box(world->black_box, world->header,
                                                  {.folder = shop->file("."), .bus = "can0"}, fault);
@@ -217,10 +217,10 @@ class BlackBoxReplayTest : public testing::Test {
             shop->run("replay " + test::kPaperMachine + " " + path + " --json=box.json " + more),
             wanted_code)
             << shop->out << shop->err;
-        return nlohmann::json::parse(test::content_of(shop->file("box.json")));
+        return test::Json::parse(test::content_of(shop->file("box.json")));
     }
     /// Of a dump that goes back to the start.
-    static void expect_same_frames(const nlohmann::json& all) {
+    static void expect_same_frames(const test::Json& all) {
         ASSERT_FALSE(all["sent"].is_null()) << all.dump(1);
         EXPECT_EQ(all["sent"]["different"], 0) << shop->out;
         EXPECT_EQ(all["sent"]["same"].get<long>(),
@@ -278,7 +278,7 @@ TEST_F(BlackBoxReplayTest, AStopIsFoundAgainAtTheSameSampleForTheSameReasonAndPa
 TEST_F(BlackBoxReplayTest, AStopByAnotherDevicesPlanIsFoundAgain) {
     make_world();
     play_to_stop();
-    const std::int64_t usual_us = replay(kExitCollision)["recorded"]["latched_us"];
+    const auto usual_us = replay(kExitCollision)["recorded"]["latched_us"].get<std::int64_t>();
     loaded->machine.plan = plan_of(1, stop_tasks(loaded->machine), 0, {500, 500, 2000, 4000, 0});
     make_world();
     loaded->machine.plan.reset();
@@ -496,10 +496,10 @@ std::vector<CanFrame> there_and_back(const Machine& machine, const std::vector<C
 TEST_F(BlackBoxReplayTest, WhatWasWithheldBeforeArmingIsWithheldAgain) {
     make_world();
     play_to_stop();
-    const std::int64_t stop_us = replay(kExitCollision)["recorded"]["latched_us"];
+    const auto stop_us = replay(kExitCollision)["recorded"]["latched_us"].get<std::int64_t>();
     make_world();
     bool was_ready = false, was_withheld = false, was_armed = false;
-    nlohmann::json unstopped;
+    test::Json unstopped;
     world->play(there_and_back(loaded->machine, trace, stop_us), 0, [&] {
         was_withheld = was_withheld || (was_ready && phase() == GuardPhase::selftest);
         if (unstopped.is_null() && world->guard->withheld().reason == StopReason::predicted) {
@@ -540,7 +540,7 @@ TEST_F(BlackBoxReplayTest, AnotherMachineIsRefusedAndFoundOut) {
     EXPECT_EQ(shop->run("replay " + other + " " + path + " --lenient --json=other.json"),
               kExitInternal)
         << shop->out;
-    const auto all = nlohmann::json::parse(test::content_of(shop->file("other.json")));
+    const auto all = test::Json::parse(test::content_of(shop->file("other.json")));
     EXPECT_FALSE(all["is_reproduced"].get<bool>());
     EXPECT_GT(all["verdicts"]["different"].get<long>(), 0);
 }
@@ -559,7 +559,7 @@ TEST_F(BlackBoxReplayTest, ADamagedDumpIsUsedUpToTheDamage) {
               kExitCan);
     EXPECT_NE(shop->err.find("damaged.axgbox:"), std::string::npos) << shop->err;
     EXPECT_NE(shop->err.find(". Earlier records are used"), std::string::npos) << shop->err;
-    const auto all = nlohmann::json::parse(test::content_of(shop->file("box.json")));
+    const auto all = test::Json::parse(test::content_of(shop->file("box.json")));
     EXPECT_GT(all["verdicts"]["same"].get<long>(), 50);
 }
 
@@ -588,7 +588,7 @@ TEST_F(BlackBoxReplayTest, TheFramesOfADumpAreATrace) {
                         " frames.log --deadline-us 10000000 --json=trace.json"),
               kExitCollision)
         << shop->err;
-    const auto again = nlohmann::json::parse(test::content_of(shop->file("trace.json")));
+    const auto again = test::Json::parse(test::content_of(shop->file("trace.json")));
     EXPECT_EQ(again["stops"][0]["reason"], "predicted");
     EXPECT_EQ(again["stops"][0]["pair"], "cutter-c");
     EXPECT_EQ(shop->run("replay " + test::kPaperMachine + " " + shop->file("none.axgbox")),

@@ -6,12 +6,12 @@
 
 #include <algorithm>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "core/mesh/stl.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/protocol/guard_frames.hpp"
+#include "tests/support/json_value.hpp"
 #include "tests/support/replay_fixture.hpp"
 #include "tests/support/solids.hpp"
 
@@ -59,12 +59,12 @@ class ContainedReplay : public testing::Test {
         (void)shop.write("p.ngc", program);
         ASSERT_EQ(shop.run("simulate m.yaml p.ngc -o t.log " + options), kExitClean) << shop.err;
     }
-    nlohmann::json replay(int wanted, const std::string& options = "") {
+    test::Json replay(int wanted, const std::string& options = "") {
         const int code = shop.run(
             "replay m.yaml t.log --mode contact --json=r.json --deadline-us 1000000 " + options);
         EXPECT_EQ(code, wanted) << shop.out << shop.err;
         const std::string text = test::content_of(shop.file("r.json"));
-        return text.empty() ? nlohmann::json() : nlohmann::json::parse(text);
+        return text.empty() ? test::Json() : test::Json::parse(text);
     }
 
     test::Workshop shop;
@@ -80,7 +80,7 @@ TEST_F(ContainedReplay, AJumpOverTheWallStopsAtTheFirstSampleInside) {
     const auto& stop = document["stops"][0];
     EXPECT_EQ(stop["reason"], "contained");
     EXPECT_EQ(stop["pair"], "cutter-block");
-    const double x_mm = stop["axes"]["X_mm"];
+    const auto x_mm = stop["axes"]["X_mm"].get<double>();
     EXPECT_GT(x_mm, 50.1);
     EXPECT_LT(x_mm, 52) << "the first sample beyond the wall";
     ASSERT_EQ(stop["pairs"].size(), 1U);
@@ -145,7 +145,7 @@ TEST_F(ContainedReplay, AnOpenBlockHoldsNothing) {
     EXPECT_EQ(replay(kExitClean)["stop_count"], 0);
     ASSERT_EQ(shop.run("check m.yaml --json=c.json"), kExitClean) << shop.err;
     EXPECT_NE(shop.out.find("OPEN: bodies inside are not detected"), std::string::npos) << shop.out;
-    const auto check = nlohmann::json::parse(test::content_of(shop.file("c.json")));
+    const auto check = test::Json::parse(test::content_of(shop.file("c.json")));
     EXPECT_EQ(check["bodies"][0]["mesh"]["open_shells"], 1);
     EXPECT_EQ(check["contacts"][0]["contained"], 0);
 }
@@ -167,7 +167,7 @@ TEST_F(ContainedReplay, CheckSaysWhichShellsAreOpenAndWhichHold) {
 TEST_F(ContainedReplay, CheckNamesWhatIsInsideWhat) {
     write_machine(kBlock);
     ASSERT_EQ(shop.run("check m.yaml --json=c.json"), kExitClean) << shop.err;
-    auto document = nlohmann::json::parse(test::content_of(shop.file("c.json")));
+    auto document = test::Json::parse(test::content_of(shop.file("c.json")));
     EXPECT_GT(document["contacts"][0]["contained"].get<int>(), 5);  // 40 of 600 mm of travel
     EXPECT_LT(document["contacts"][0]["contained"].get<int>(), 40);
     EXPECT_EQ(document["contacts"][0]["containment_not_known"], 0);

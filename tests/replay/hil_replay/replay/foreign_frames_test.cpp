@@ -6,15 +6,15 @@
 
 #include <cstdint>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "firmware_if/cli/exit_codes.hpp"
+#include "tests/support/json_value.hpp"
 #include "tests/support/replay_fixture.hpp"
 
 namespace axg {
 namespace {
 
-using Json = nlohmann::json;
+using test::Json;
 
 // Counts of 1 um and 0.0001 degrees, as in our classical frames: equal positions, equal verdicts.
 constexpr const char* kDbc = R"(VERSION ""

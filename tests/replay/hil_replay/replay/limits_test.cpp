@@ -5,17 +5,15 @@
 #include <gtest/gtest.h>
 
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <regex>
 #include <string>
 
 #include "firmware_if/cli/exit_codes.hpp"
+#include "tests/support/json_value.hpp"
 #include "tests/support/replay_fixture.hpp"
 
 namespace axg::test {
 namespace {
-
-using Json = nlohmann::json;
 
 class Limits : public testing::Test {
   protected:
@@ -95,7 +93,7 @@ TEST_F(Limits, WhatInspectProposesIsEnoughForTheTrace) {
     ASSERT_NE(unknown, std::string::npos);
     EXPECT_NE(shop->out.find("stopping_mm_s2", unknown), std::string::npos) << shop->out;
     const Json& proposed = all["proposed_limits"]["X"];
-    const double measured = all["limits"]["X"]["acceleration"]["measured"];
+    const auto measured = all["limits"]["X"]["acceleration"]["measured"].get<double>();
     EXPECT_GE(proposed["acceleration_mm_s2"], 1.1 * measured);
     EXPECT_LE(proposed["acceleration_mm_s2"], 1.5 * measured) << "errors are not taken off";
     EXPECT_TRUE(proposed["stopping_mm_s2"].is_null());

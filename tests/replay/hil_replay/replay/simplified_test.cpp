@@ -3,18 +3,16 @@
 // same sample or before, and a body inside another one is found all the same.
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "config/mesh/simplify_meshes.hpp"
 #include "core/mesh/stl.hpp"
+#include "tests/support/json_value.hpp"
 #include "tests/support/replay_fixture.hpp"
 #include "tests/support/round_solids.hpp"
 
 namespace axg::test {
 namespace {
-
-using nlohmann::json;
 
 constexpr double kDeviationMm = 0.3;
 
@@ -51,9 +49,9 @@ class Simplified : public testing::Test {
         text.replace(text.find("@AT@"), 4, ball_at);
         (void)shop_.write(name, text.replace(text.find("@SIMPLIFY@"), 10, key));
     }
-    json report_of(const std::string& command, int wanted) {
+    Json report_of(const std::string& command, int wanted) {
         EXPECT_EQ(shop_.run(command + " --json=r.json"), wanted) << shop_.out << shop_.err;
-        return json::parse(content_of(shop_.file("r.json")));
+        return Json::parse(content_of(shop_.file("r.json")));
     }
 
     const Triangles kBall = ball(20, 40);
@@ -61,9 +59,9 @@ class Simplified : public testing::Test {
 };
 
 TEST_F(Simplified, CheckSaysAtWhatPrice) {
-    const json check = report_of("check simple.yaml", 0);
+    const Json check = report_of("check simple.yaml", 0);
     ASSERT_EQ(check.at("notes").size(), 1U);
-    const std::string note = check.at("notes").at(0);
+    const auto note = check.at("notes").at(0).get<std::string>();
     EXPECT_NE(note.find("bodies.ball.mesh: "), std::string::npos) << note;
     EXPECT_NE(note.find(" of 4800 triangles"), std::string::npos) << note;
     const SimplifiedMesh simple = simplify({"ball", kBall}, kDeviationMm);
@@ -90,7 +88,7 @@ TEST_F(Simplified, StopsAtTheSameSampleOrBefore) {
                 .at("stops")
                 .at(0);
         };
-        const json whole = stop_of("whole.yaml"), simple = stop_of("simple.yaml");
+        const Json whole = stop_of("whole.yaml"), simple = stop_of("simple.yaml");
         ASSERT_GT(whole.at("sample"), 100);
         EXPECT_EQ(whole.at("reason"), simple.at("reason"));
         EXPECT_LE(simple.at("sample"), whole.at("sample")) << mode;
@@ -110,7 +108,7 @@ TEST_F(Simplified, InsideIsInside) {
     write("whole.yaml", "", "0");
     write("simple.yaml", ", simplify_mm: 0.3", "0");
     for (const std::string machine : {"whole.yaml", "simple.yaml"}) {
-        const json report =
+        const Json report =
             report_of("replay " + machine + " in.log --mode contact --deadline-us 1000000", 10);
         EXPECT_EQ(report.at("permits"), 0) << report.dump(2);
     }

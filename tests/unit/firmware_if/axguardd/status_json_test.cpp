@@ -6,10 +6,10 @@
 #include <gtest/gtest.h>
 
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "firmware_if/cli/exit_codes.hpp"
+#include "tests/support/json_value.hpp"
 #include "tests/support/motion_machine.hpp"
 #include "tests/support/page_text.hpp"
 
@@ -36,7 +36,7 @@ class StatusLineTest : public testing::Test {
         const StatusLine line(machine, "can0", "stoppable", std::string(64, 'a'));
         return {room.data(), line.write(shown, why, kNowUs, room)};
     }
-    nlohmann::json json() const { return nlohmann::json::parse(text(&view)); }
+    test::Json json() const { return test::Json::parse(text(&view)); }
     StatusWords words() const {
         const auto read = words_of_status(text(&view));
         EXPECT_TRUE(read);
@@ -100,7 +100,7 @@ TEST_F(StatusLineTest, OfAStopItNamesCauseReasonAndPair) {
     const auto said = json();
     EXPECT_EQ(said["cause"], "verdict");
     EXPECT_EQ(said["reason"], "contact");
-    EXPECT_EQ(said["pair"], (nlohmann::json{"cutter", "plate"}));
+    EXPECT_EQ(said["pair"], test::Json::array({"cutter", "plate"}));
     EXPECT_EQ(said["confirmed"], false);
     view.is_confirmed = true;
     EXPECT_EQ(json()["confirmed"], true);
@@ -115,7 +115,7 @@ TEST_F(StatusLineTest, OfAWithheldPermitItNamesWhatIsNotProven) {
     view.withheld = {WithheldPermit::Why::not_proven, StopReason::predicted, 0};
     EXPECT_EQ(json()["withheld"], "not proven");
     EXPECT_EQ(json()["withheld_reason"], "predicted");
-    EXPECT_EQ(json()["withheld_pair"], (nlohmann::json{"cutter", "plate"}));
+    EXPECT_EQ(json()["withheld_pair"], test::Json::array({"cutter", "plate"}));
     EXPECT_NE(words().text.find("no permit: not proven: predicted: cutter - plate\n"),
               std::string::npos)
         << words().text;
@@ -144,7 +144,7 @@ TEST_F(StatusLineTest, DistancesAreThereWhereTheyAreKnown) {
     EXPECT_EQ(has["jog"], false);
     EXPECT_EQ(has["list_full"], false);
     EXPECT_EQ(has["tool"], machine.tools[0].number);
-    EXPECT_EQ(has["open"], (nlohmann::json{{"needed_mm", 3.0}, {"available_mm", 2.75}}));
+    EXPECT_EQ(has["open"], test::Json::object({{"needed_mm", 3.0}, {"available_mm", 2.75}}));
     EXPECT_TRUE(json()["withheld_why"].is_null());
     why.stop->is_whole = why.stop->is_jog = true;
     why.stop->tool = kNoIndex;
@@ -189,7 +189,7 @@ TEST_F(StatusLineTest, DistancesInWordsAreThoseOfAReplay) {
 }
 
 TEST_F(StatusLineTest, BeforeTheFirstViewItSaysInit) {
-    const auto said = nlohmann::json::parse(text(nullptr));
+    const auto said = test::Json::parse(text(nullptr));
     EXPECT_EQ(said["phase"], "init");
     const auto read = words_of_status(text(nullptr));
     ASSERT_TRUE(read);
@@ -285,16 +285,16 @@ TEST_F(StatusLineTest, WhatIsNoStatusIsNotTaken) {
 
 // What this program does not know is nothing to go on by.
 TEST_F(StatusLineTest, AKeyThatIsMissingOrOfAnotherTypeIsNoStatus) {
-    const nlohmann::json whole = json();
+    const test::Json whole = json();
     ASSERT_TRUE(words_of_status(whole.dump()));
     for (const auto& [key, value] : whole.items()) {
-        nlohmann::json odd = whole;
+        test::Json odd = whole;
         odd.erase(key);
         EXPECT_FALSE(words_of_status(odd.dump())) << "without " << key;
-        odd[key] = nlohmann::json::object();
+        odd.set(key, test::Json::object());
         EXPECT_FALSE(words_of_status(odd.dump())) << key;
     }
-    for (const auto& [key, value] : {std::pair<const char*, nlohmann::json>{"age_ms", 1e300},
+    for (const auto& [key, value] : {std::pair<const char*, test::Json>{"age_ms", 1e300},
                                      {"age_ms", -1},
                                      {"age_ms", 2.0},
                                      {"phase_ms", -5},
@@ -303,36 +303,38 @@ TEST_F(StatusLineTest, AKeyThatIsMissingOrOfAnotherTypeIsNoStatus) {
                                      {"stands", nullptr},
                                      {"confirmed", 1},
                                      {"session", "yes"},
-                                     {"pair", {1, 2}},
-                                     {"withheld_pair", {"a"}},
+                                     {"pair", test::Json::array({1, 2})},
+                                     {"withheld_pair", test::Json::array({"a"})},
                                      {"hashes", "some"},
                                      {"phase", "dancing"},
                                      {"phase", "Stopped"},
                                      {"cause", "boredom"},
                                      {"cause", ""}}) {
-        nlohmann::json odd = whole;
-        odd[key] = value;
+        test::Json odd = whole;
+        odd.set(key, value);
         EXPECT_FALSE(words_of_status(odd.dump())) << key << ' ' << value;
     }
     stop(GuardFault::verdict, StopReason::predicted);
     why.stop = a_why();
-    const nlohmann::json with_why = json();
+    const test::Json with_why = json();
     ASSERT_TRUE(words_of_status(with_why.dump()));
     for (const auto& [key, value] : with_why["why"].items()) {
-        nlohmann::json odd = with_why;
-        odd["why"].erase(key);
+        test::Json odd = with_why, odd_why = with_why["why"];
+        odd_why.erase(key);
+        odd.set("why", odd_why);
         EXPECT_FALSE(words_of_status(odd.dump())) << "without " << key;
-        odd["why"][key] = "\x1b[2J";
+        odd_why.set(key, "\x1b[2J");
+        odd.set("why", odd_why);
         EXPECT_FALSE(words_of_status(odd.dump())) << key;
     }
-    nlohmann::json newer = whole;
-    newer["a key that is new"] = 1;
+    test::Json newer = whole;
+    newer.set("a key that is new", 1);
     EXPECT_TRUE(words_of_status(newer.dump()));
     stop(GuardFault::verdict, StopReason::contact);
-    nlohmann::json unknown = json();
-    unknown["cause"] = "boredom";
+    test::Json unknown = json();
+    unknown.set("cause", "boredom");
     EXPECT_FALSE(words_of_status(unknown.dump()));
-    unknown["cause"] = "none";
+    unknown.set("cause", "none");
     const auto read = words_of_status(unknown.dump());
     ASSERT_TRUE(read);
     EXPECT_NE(read->exit_code, kExitClean);
@@ -340,13 +342,14 @@ TEST_F(StatusLineTest, AKeyThatIsMissingOrOfAnotherTypeIsNoStatus) {
 
 TEST_F(StatusLineTest, NoCharacterOfItSteersATerminal) {
     stop(GuardFault::verdict, StopReason::contact);
-    nlohmann::json odd = json();
+    test::Json odd = json();
     const std::string steering = "\x1b]0;x\x07\x7f\xc2\x9b[J\xe2\x80\xae";
     for (const char* const key : {"axguardd", "bus", "machine", "mode", "configuration_sha256",
                                   "reason", "withheld", "withheld_reason"}) {
-        odd[key] = steering;
+        odd.set(key, steering);
     }
-    odd["pair"] = odd["withheld_pair"] = {steering, steering};
+    odd.set("pair", test::Json::array({steering, steering}));
+    odd.set("withheld_pair", odd["pair"]);
     const auto read = words_of_status(odd.dump());
     ASSERT_TRUE(read);
     for (const std::string& said : {read->text, read->json}) {
@@ -354,7 +357,7 @@ TEST_F(StatusLineTest, NoCharacterOfItSteersATerminal) {
             EXPECT_TRUE(c == '\n' || (c >= ' ' && c <= '~')) << static_cast<int>(c);
         }
     }
-    EXPECT_EQ(nlohmann::json::parse(read->json), odd);
+    EXPECT_EQ(test::Json::parse(read->json), odd);
 }
 
 }  // namespace

@@ -3,28 +3,25 @@
 // the library for boards nor with the script that wrote the file.
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "firmware_if/protocol/e2e.hpp"
+#include "tests/support/json_value.hpp"
 
 namespace axg {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-const nlohmann::json& vectors() {
-    static const nlohmann::json all = [] {
-        std::ifstream file(std::string(AXG_SOURCE_DIR) + "/tests/vectors/permit2.json");
-        return nlohmann::json::parse(file);
-    }();
+const test::Json& vectors() {
+    static const test::Json all =
+        test::Json::parse_file(AXG_SOURCE_DIR "/tests/vectors/permit2.json");
     return all;
 }
 
-Bytes bytes_of(const nlohmann::json& text) {
+Bytes bytes_of(const test::Json& text) {
     const auto hex = text.get<std::string>();
     Bytes bytes;
     for (std::size_t i = 0; i + 1 < hex.size(); i += 2) {
@@ -53,12 +50,15 @@ TEST(BoardVectors, PermitsHaveTheAnswerForTheirNonceAndLap) {
     for (const auto& one : vectors()["permits"]) {
         SCOPED_TRACE(one["name"].get<std::string>());
         const Bytes plain = bytes_of(one["plain"]), twin = bytes_of(one["twin"]);
-        Bytes content{one["word"], one["echo"], one["live"], one["cap"], one["mask"]};
+        Bytes content;
+        for (const char* const key : {"word", "echo", "live", "cap", "mask"}) {
+            content.push_back(one[key].get<std::uint8_t>());
+        }
         content.push_back(static_cast<std::uint8_t>(one["n"].get<unsigned>() << 4U |
                                                     one["level"].get<unsigned>()));
         Bytes covered = content;
-        put(covered, one["nonce"], 3);
-        put(covered, one["lap"], 2);
+        put(covered, one["nonce"].get<std::uint32_t>(), 3);
+        put(covered, one["lap"].get<std::uint32_t>(), 2);
         const unsigned answer = crc16_ccitt(covered) ^ 0xC5A3U;
         const Bytes made{content[0],
                          content[1],

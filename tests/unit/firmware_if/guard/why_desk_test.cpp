@@ -6,22 +6,22 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <nlohmann/json.hpp>
 
 #include "firmware_if/axguardd/status_json.hpp"
 #include "hil_replay/replay/why_stop.hpp"
 #include "tests/support/descending_chain.hpp"
+#include "tests/support/json_value.hpp"
 
 namespace axg {
 namespace {
 
 using test::DescendingChain;
 
-nlohmann::json line_of(const Machine& machine, const GuardWhy& why, const LiveView& view) {
+test::Json line_of(const Machine& machine, const GuardWhy& why, const LiveView& view) {
     const StatusLine line(machine, "can0", "stoppable", "0");
     std::array<char, kStatusLineBytesMax> text{};
     const std::size_t size = line.write(&view, why, view.time_us, text);
-    return nlohmann::json::parse(std::string(text.data(), size));
+    return test::Json::parse(std::string(text.data(), size));
 }
 
 /// As a replay asks about it.
@@ -43,7 +43,7 @@ LiveView stopped_by(const LiveResult& result) {
     return view;
 }
 
-void expect_same(const nlohmann::json& has, const StopWhy& expected) {
+void expect_same(const test::Json& has, const StopWhy& expected) {
     constexpr double kDigitsMm = 0.51e-4;  // four are written
     ASSERT_TRUE(has.is_object());
     const DistanceNeed& need = expected.need;
@@ -86,7 +86,7 @@ TEST(WhyDesk, TheLineHasTheDistancesOfTheReplay) {
     ASSERT_TRUE(is_halved());
     view.withheld = chain.withheld();
     const GuardWhy why = chain.desk.why(view.stop_query, view.withheld);
-    const nlohmann::json said = line_of(chain.machine(), why, view);
+    const test::Json said = line_of(chain.machine(), why, view);
     expect_same(said["why"], stop);
     const StopWhy withheld = offline(chain);
     expect_same(said["withheld_why"], withheld);
@@ -101,7 +101,7 @@ TEST(WhyDesk, InContactModeMarginAndArithmeticAreAllOfTheNeed) {
     ASSERT_EQ(chain.result.result.reason, StopReason::contact);
     const LiveView view = stopped_by(chain.result);
     const GuardWhy why = chain.desk.why(view.stop_query, view.withheld);
-    const nlohmann::json has = line_of(chain.machine(), why, view)["why"];
+    const test::Json has = line_of(chain.machine(), why, view)["why"];
     ASSERT_TRUE(has.is_object());
     const StopWhy expected = offline(chain);
     EXPECT_NEAR(has["needed_mm"].get<double>(), expected.need.sum_mm(), 1e-4);

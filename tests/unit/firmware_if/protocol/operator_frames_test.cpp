@@ -5,13 +5,12 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <random>
 #include <string>
 
 #include "firmware_if/protocol/e2e.hpp"
 #include "tests/support/frame_bytes.hpp"
+#include "tests/support/json_value.hpp"
 #include "tests/support/operator_panel.hpp"
 #include "tests/support/seed.hpp"
 
@@ -133,8 +132,7 @@ TEST(OperatorFrames, WhatIsNotExactlyAMessageSaysHow) {
 }
 
 TEST(OperatorFrames, TheVectorsAreTheGuardsToo) {
-    std::ifstream file(std::string(AXG_SOURCE_DIR) + "/tests/vectors/permit2.json");
-    const auto vectors = nlohmann::json::parse(file);
+    const auto vectors = test::Json::parse_file(AXG_SOURCE_DIR "/tests/vectors/permit2.json");
     int messages = 0, statuses = 0;
     for (const auto& script : vectors["scripts"]) {
         for (const auto& step : script["steps"]) {
@@ -145,8 +143,8 @@ TEST(OperatorFrames, TheVectorsAreTheGuardsToo) {
                     {.phase = static_cast<GuardPhase>(step["phase"].get<int>()),
                      .action = static_cast<OperatorAction>(step["action"].get<int>()),
                      .refusal = static_cast<OperatorRefusal>(step["refusal"].get<int>()),
-                     .counter = step["counter"],
-                     .nonce = step["nonce"]},
+                     .counter = step["counter"].get<std::uint8_t>(),
+                     .nonce = step["nonce"].get<std::uint32_t>()},
                     0);
                 EXPECT_EQ(hex_of(made), step["want"].get<std::string>());
             } else if (step["do"] == "operator") {

@@ -5,12 +5,11 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "tests/support/board_fixture.hpp"
 #include "tests/support/frame_bytes.hpp"
+#include "tests/support/json_value.hpp"
 
 namespace axg {
 namespace {
@@ -27,21 +26,20 @@ CanFrame frame_of(const axg_board_can_frame& made) {
 }
 
 TEST(Permit2Frames, PermitsAreThoseOfTheVectors) {
-    std::ifstream file(std::string(AXG_SOURCE_DIR) + "/tests/vectors/permit2.json");
-    const auto vectors = nlohmann::json::parse(file);
+    const auto vectors = test::Json::parse_file(AXG_SOURCE_DIR "/tests/vectors/permit2.json");
     ASSERT_GE(vectors["permits"].size(), 6U);
     for (const auto& one : vectors["permits"]) {
         SCOPED_TRACE(one["name"].get<std::string>());
         const Permit2 permit{.word = static_cast<PermitWord>(one["word"].get<int>()),
-                             .sync_counter = one["echo"],
-                             .live_counter = one["live"],
+                             .sync_counter = one["echo"].get<std::uint8_t>(),
+                             .live_counter = one["live"].get<std::uint8_t>(),
                              .known_answer_signature = 0xC5A3,
-                             .cap = one["cap"],
-                             .mask = one["mask"],
-                             .samples = one["n"],
-                             .level = one["level"],
-                             .nonce = one["nonce"],
-                             .lap = one["lap"]};
+                             .cap = one["cap"].get<std::uint8_t>(),
+                             .mask = one["mask"].get<std::uint8_t>(),
+                             .samples = one["n"].get<std::uint8_t>(),
+                             .level = one["level"].get<std::uint8_t>(),
+                             .nonce = one["nonce"].get<std::uint32_t>(),
+                             .lap = one["lap"].get<std::uint16_t>()};
         const auto pair = encode_permit2({}, permit, 7);
         EXPECT_EQ(hex_of(pair[0]), one["plain"].get<std::string>());
         EXPECT_EQ(hex_of(pair[1]), one["twin"].get<std::string>());

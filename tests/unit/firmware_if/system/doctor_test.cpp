@@ -8,10 +8,10 @@
 
 #include <algorithm>
 #include <cstring>
-#include <nlohmann/json.hpp>
 
 #include "firmware_if/axguardd/run_command.hpp"
 #include "firmware_if/system/fitness.hpp"
+#include "tests/support/json_value.hpp"
 #include "tests/support/replay_fixture.hpp"
 
 namespace axg {
@@ -294,7 +294,7 @@ TEST(Doctor, TheCommandEndsWith14WhereSomethingIsBadAndSaysWhat) {
     EXPECT_EQ(run_axguardd(words), 0) << "a warning is no refusal";
     tree.put("sys/class/net/can0/flags", "0x40080");
     EXPECT_EQ(run_axguardd(words), 14);
-    const auto found = nlohmann::json::parse(test::content_of(tree.path("found.json")));
+    const auto found = test::Json::parse(test::content_of(tree.path("found.json")));
     EXPECT_FALSE(found["fit"].get<bool>());
     EXPECT_EQ(found["bad"], 1);
     EXPECT_EQ(found["checks"].size(), 11U + 4U);

@@ -7,10 +7,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "firmware_if/cli/exit_codes.hpp"
+#include "tests/support/json_value.hpp"
 #include "tests/support/replay_fixture.hpp"
 
 namespace axg {
@@ -27,7 +27,7 @@ class InspectCommand : public testing::Test {
     /// Exit code; both outputs are kept, and the document of --json.
     int run(const std::string& arguments, const std::string& command = "inspect") {
         const int code = shop.run(command + " " + arguments + " --json");
-        document = nlohmann::json::parse(shop.out, nullptr, false);
+        document = test::Json::accept(shop.out) ? test::Json::parse(shop.out) : test::Json();
         return code;
     }
 
@@ -49,7 +49,7 @@ class InspectCommand : public testing::Test {
     }
 
     test::Workshop shop;
-    nlohmann::json document;
+    test::Json document;
 };
 
 TEST_F(InspectCommand, PeriodsJitterAndGapsAreThoseOfTheFrames) {
@@ -78,7 +78,7 @@ TEST_F(InspectCommand, KindsOfFramesAreToldApart) {
     ASSERT_EQ(run(trace), kExitClean) << shop.err;
     std::vector<std::string> names;
     for (const auto& id : document["ids"]) {
-        names.push_back(id["name"]);
+        names.push_back(id["name"].get<std::string>());
     }
     EXPECT_EQ(names,
               (std::vector<std::string>{"123", "123 fd", "123 remote", "00000123", "error"}));
@@ -98,15 +98,15 @@ TEST_F(InspectCommand, AMachineFileDecodesTheAxes) {
     EXPECT_NE(shop.err.find("sample period 2000 us"), std::string::npos) << "taken from the trace";
     EXPECT_EQ(machine["samples_lost"], 0);
     EXPECT_TRUE(machine["receiver_faults"].empty()) << machine["receiver_faults"];
-    EXPECT_EQ(machine["tools"], nlohmann::json({1}));
+    EXPECT_EQ(machine["tools"], test::Json::array({1}));
     const auto axis = [&](std::size_t i) { return machine["axes"][i]; };
-    EXPECT_NEAR(axis(0)["least"], -2, 1e-3);
-    EXPECT_NEAR(axis(0)["most"], 10, 1e-3);
-    EXPECT_NEAR(axis(0)["last"], -2, 1e-3);
-    EXPECT_NEAR(axis(1)["least"], -5, 1e-3);
-    EXPECT_NEAR(axis(2)["most"], 1, 1e-3);
-    EXPECT_NEAR(axis(3)["least"], -20, 1e-3);
-    EXPECT_NEAR(axis(4)["last"], 300, 1e-3);
+    EXPECT_NEAR(axis(0)["least"].get<double>(), -2, 1e-3);
+    EXPECT_NEAR(axis(0)["most"].get<double>(), 10, 1e-3);
+    EXPECT_NEAR(axis(0)["last"].get<double>(), -2, 1e-3);
+    EXPECT_NEAR(axis(1)["least"].get<double>(), -5, 1e-3);
+    EXPECT_NEAR(axis(2)["most"].get<double>(), 1, 1e-3);
+    EXPECT_NEAR(axis(3)["least"].get<double>(), -20, 1e-3);
+    EXPECT_NEAR(axis(4)["last"].get<double>(), 300, 1e-3);
     EXPECT_LE(axis(0)["fastest_per_min"], 600 * 1.01);
     EXPECT_GE(axis(0)["fastest_per_min"], 300) << "of 600 mm/min along X and Y";
     // A sample that is missing is counted.
@@ -131,7 +131,7 @@ TEST_F(InspectCommand, PackedTracesAreReadAsTheyAre) {
     const std::string plain = shop.write("a.log", regular());
     ASSERT_EQ(std::system(("gzip -k " + plain).c_str()), 0);
     ASSERT_EQ(run(plain), kExitClean);
-    const nlohmann::json of_plain = document["ids"];
+    const test::Json of_plain = document["ids"];
     const int code = run(plain + ".gz");
     if (shop.err.find("built without zlib") != std::string::npos) {
         GTEST_SKIP() << shop.err;

@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <nlohmann/json.hpp>
 
 #include "config/compiled/compiled_machine.hpp"
 #include "config/machine/effective_text.hpp"
@@ -18,6 +17,7 @@
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
 #include "hil_replay/commands/commands.hpp"
+#include "tests/support/json_value.hpp"
 #include "tests/support/machine_text.hpp"
 #include "tests/support/solids.hpp"
 
@@ -92,7 +92,7 @@ TEST_F(Commands, InitWritesAFileThatChecksAtOnce) {
     EXPECT_EQ(init.exit_code, kExitClean) << init.err;
     const Outcome check = axguard({"check", path("m.yaml"), "--json=" + path("m.json")});
     EXPECT_EQ(check.exit_code, kExitClean) << check.err;
-    const auto document = nlohmann::json::parse(read(path("m.json")));
+    const auto document = Json::parse(read(path("m.json")));
     EXPECT_EQ(document["bodies"].size(), 8U);
     EXPECT_EQ(document["tools"].size(), 1U);
     EXPECT_EQ(document["pairs"].size() + document["exclusions"].size(), 8U * 7U / 2U);
@@ -375,7 +375,7 @@ TEST_F(Commands, JsonHasStdoutForItself) {
     const Outcome run =
         axguard({"check", "--json", path("m.yaml")});  // the file is no value of --json
     EXPECT_EQ(run.exit_code, kExitClean);
-    const auto document = nlohmann::json::parse(run.out);
+    const auto document = Json::parse(run.out);
     EXPECT_EQ(document["file"], path("m.yaml"));
     EXPECT_EQ(document["configuration_sha256"].get<std::string>().size(), 64U);
     EXPECT_TRUE(has(run.err, "pairs checked"));

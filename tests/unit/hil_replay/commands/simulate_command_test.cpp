@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "firmware_if/cli/exit_codes.hpp"
+#include "tests/support/json_value.hpp"
 #include "tests/support/replay_fixture.hpp"
 
 namespace axg {
@@ -60,7 +60,7 @@ TEST_F(SimulateCommand, WhatIsIgnoredIsEchoedInWordsAndJson) {
         << err;
     EXPECT_NE(err.find(part + ":1: M428: ignored (--ignore): M428 (tcp)"), std::string::npos);
     EXPECT_NE(err.find("joint positions"), std::string::npos);
-    const auto document = nlohmann::json::parse(out);
+    const auto document = test::Json::parse(out);
     EXPECT_EQ(document["reading"]["ignored"][0]["line"], 1);
     EXPECT_EQ(document["reading"]["ignored"][0]["word"], "M428");
     EXPECT_GT(document["motion"]["samples"], 10);

@@ -3,12 +3,12 @@
 // The program within the data of a page: each block once and as text, the line of every row and
 // stop also where the program is too long for its steps, and nothing where no line is known.
 #include "hil_replay/page/page_program_json.hpp"
+#include "tests/support/json_value.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include <nlohmann/json.hpp>
 #include <string>
 
 namespace axg::test {
@@ -51,11 +51,11 @@ ProgramLines many_lines(std::uint32_t count, std::int64_t step_us, const std::st
 }
 
 /// The line that a reader of the page finds at an instant; 0: none.
-std::uint32_t line_at(const nlohmann::json& program, double time_s) {
-    const nlohmann::json& times = program["steps"]["time_s"];
-    const auto next = std::upper_bound(
-        times.begin(), times.end(), time_s + 5e-7,
-        [](double time, const nlohmann::json& step) { return time < step.get<double>(); });
+std::uint32_t line_at(const Json& program, double time_s) {
+    const Json& times = program["steps"]["time_s"];
+    const auto next =
+        std::upper_bound(times.begin(), times.end(), time_s + 5e-7,
+                         [](double time, const Json& step) { return time < step.get<double>(); });
     return next == times.begin()
                ? 0
                : program["steps"]["line"][static_cast<std::size_t>(next - times.begin() - 1)]
@@ -72,13 +72,12 @@ TEST(PageProgram, ALoopHasItsBlocksOnceAndAllItsSteps) {
     }
     const std::string text = page_data(run.page(&lines));
     EXPECT_EQ(text.find("G1 X7"), text.rfind("G1 X7")) << "a block is written twice";
-    const auto program = nlohmann::json::parse(text)["program"];
+    const auto program = Json::parse(text)["program"];
     EXPECT_EQ(program["file"], "loop.ngc");
     EXPECT_EQ(program["count"], 6);
-    EXPECT_EQ(program["steps"]["time_s"],
-              nlohmann::json({0.0, 0.0015, 0.003, 0.0045, 0.006, 0.0075}));
-    EXPECT_EQ(program["steps"]["line"], nlohmann::json({0, 7, 12, 7, 12, 7}));
-    EXPECT_EQ(program["blocks"], nlohmann::json({{"7", "G1 X7"}, {"12", "G1 X12"}}));
+    EXPECT_EQ(program["steps"]["time_s"], Json::array({0.0, 0.0015, 0.003, 0.0045, 0.006, 0.0075}));
+    EXPECT_EQ(program["steps"]["line"], Json::array({0, 7, 12, 7, 12, 7}));
+    EXPECT_EQ(program["blocks"], Json::object({{"7", "G1 X7"}, {"12", "G1 X12"}}));
 }
 
 TEST(PageProgram, AHostileBlockIsText) {
@@ -91,7 +90,7 @@ TEST(PageProgram, AHostileBlockIsText) {
     EXPECT_EQ(text.find('<'), std::string::npos) << "it may close the script";
     EXPECT_EQ(text.find('\xae'), std::string::npos) << "it turns the direction of writing";
     EXPECT_LT(text.size(), 10'000U) << "a block that no table of simulate has";
-    const auto program = nlohmann::json::parse(text)["program"];
+    const auto program = Json::parse(text)["program"];
     EXPECT_EQ(program["file"], "\\u202e</script>.ngc");
     EXPECT_EQ(program["blocks"]["1"], "(\\u202e </script><b>\")");
     EXPECT_EQ(program["blocks"]["2"], "\\xff\\x01");
@@ -100,8 +99,8 @@ TEST(PageProgram, AHostileBlockIsText) {
 TEST(PageProgram, ARunWithoutLinesHasNone) {
     const SampledRun run(10);
     const ProgramLines none;
-    EXPECT_FALSE(nlohmann::json::parse(page_data(run.page(nullptr))).contains("program"));
-    EXPECT_FALSE(nlohmann::json::parse(page_data(run.page(&none))).contains("program"));
+    EXPECT_FALSE(Json::parse(page_data(run.page(nullptr))).contains("program"));
+    EXPECT_FALSE(Json::parse(page_data(run.page(&none))).contains("program"));
 }
 
 // Both sides of the bound: whole below it; above it every row and the stop keep their line.
@@ -111,7 +110,7 @@ TEST(PageProgram, ALongProgramKeepsTheLineOfEveryRowAndStop) {
     ASSERT_GT(run.rows.stride(), 1U);
     const std::string block = "G1 X1.2345 Y2.3456 Z3.4567 A4.5678 C5.6789 F1234.567 N";
     const ProgramLines small = many_lines(20'000, 1000, block);
-    const auto whole = nlohmann::json::parse(page_data(run.page(&small)))["program"];
+    const auto whole = Json::parse(page_data(run.page(&small)))["program"];
     EXPECT_EQ(whole["count"], 20'000);
     EXPECT_EQ(whole["steps"]["line"].size(), 20'000U);
     EXPECT_EQ(whole["blocks"].size(), 19'999U) << "line 0 is none";
@@ -120,7 +119,7 @@ TEST(PageProgram, ALongProgramKeepsTheLineOfEveryRowAndStop) {
     const RunPage page = run.page(&lines, R"([{"time_us": 23456789, "reason": "pair"}])");
     const std::string text = program_data(page);
     EXPECT_LT(text.size(), kProgramBytesMax);
-    const auto program = nlohmann::json::parse(text);
+    const auto program = Json::parse(text);
     EXPECT_EQ(program["count"], kSteps);
     EXPECT_LE(program["steps"]["line"].size(), run.rows.rows() + 1);
     EXPECT_EQ(program["steps"]["line"].size(), program["blocks"].size() + 1) << "line 0 is none";

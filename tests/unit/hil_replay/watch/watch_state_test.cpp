@@ -4,9 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include "firmware_if/axguardd/status_json.hpp"
+#include "tests/support/json_value.hpp"
 #include "tests/support/watched_frames.hpp"
 
 namespace axg {
@@ -38,7 +37,7 @@ class WatchState : public testing::Test {
         input.status = line_of(live, hash);
         input.status_us = input.now_us;
     }
-    [[nodiscard]] nlohmann::json json() const { return nlohmann::json::parse(watch_json(input)); }
+    [[nodiscard]] test::Json json() const { return test::Json::parse(watch_json(input)); }
     [[nodiscard]] bool notes(const std::string& words) const {
         for (const std::string& note : notes_of(input)) {
             if (note.find(words) != std::string::npos) {
