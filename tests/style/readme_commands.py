@@ -7,6 +7,7 @@ A fenced sh block runs when the line above its fence is a mark, invisible to a r
     <!-- ctest: run exit=10 -->          its last command ends with 10
     <!-- ctest: run data -->             needs the shared data; left out without it
 A fenced text block right after it (one blank line between) must be in what it printed.
+readme_example.py compares the README's prose with the example's machine and stop.
 All marked blocks of a page run in order, in one scratch folder that shows the repository's files,
 with this build's programs in PATH and as build/host-release/. Blocks that install or build are not
 marked: the test of a fresh Debian runs those.
@@ -19,7 +20,8 @@ import subprocess
 import sys
 import tempfile
 
-from sources import finish, skip
+import readme_example
+from sources import finish, read_text, skip
 
 MARK = re.compile(r"\s*<!-- ctest: run(?P<options>( data| exit=\d+)*) -->\s*$")
 
@@ -103,6 +105,8 @@ def run_page(blocks, places, environment):
                 continue
             fault = run_block(block, folder, environment)
             faults += [fault] if fault else []
+        if blocks[0].page == PAGES[0] and not faults:
+            faults += readme_example.faults_of(read_text(places[0], PAGES[0]), folder, environment)
     return faults, left_out
 
 

@@ -17,6 +17,8 @@ import layers
 import links
 import mutant_list
 import readme_commands
+import readme_example
+import readme_figures
 import shared_copies
 import words
 from sources import finish, without_comments_and_strings
@@ -187,6 +189,67 @@ def readme_blocks_are_found():
             expect(f"readme: a broken mark passes: {broken!r}", False)
         except ValueError:
             pass
+
+
+def readme_figures_notice():
+    for claim, record, is_same in [
+            ("15.1", "15.06", True), ("15.1", "15.16", False), ("114", "114.10", True),
+            ("2,000", "2000", True), ("0.63", "0.63", True), ("0.63", "0.6", False)]:
+        expect(f"readme_figures: {claim} of {record}",
+               readme_figures.same(claim, record) == is_same)
+    claims = [("a", r"takes (\d+) us", "b", r"\| (\d+) \|")]
+    for page, count in [("takes 5 us", 0), ("takes 6 us", 1), ("took 5 us", 1)]:
+        found = list(readme_figures.claim_faults({"a": page, "b": "| 5 |"}, claims))
+        expect(f"readme_figures: {page}", len(found) == count)
+    times = ("which the README has:\naxguard avx 0.63 4.24 6.68 99 0 0\n"
+             "ODE mesh 3.98 64.39 114.10 99 0 0\n")
+    page = "| axguard, AVX | 0.63 | 4.24 | 6.68 |\n| ODE 0.16 | 3.98 | 64.4 | 114 |\n"
+    readme = "all five libraries find the 99 contacts\n" + page
+    bars = "<t>axguard</text><t>0.63, 6.68</text><t>ODE</text><t>3.98, 114</text>"
+    for what, arguments, is_right in [
+            ("as recorded", (readme, page, times, bars), True),
+            ("a figure", (readme.replace("64.4", "64.5"), page, times, bars), False),
+            ("a row less", (readme, page.split("\n", maxsplit=1)[0], times, bars), False),
+            ("a missed contact", (readme, page, times.replace("99 0 0", "98 1 0"), bars), False),
+            ("a bar", (readme, page, times, bars.replace("114", "115")), False)]:
+        expect(f"readme_figures: {what}",
+               is_right == (not list(readme_figures.peer_faults(*arguments))))
+    for words_of_link, is_right in [("116 s", True), ("2 min", True), ("120 s", False),
+                                    ("3 min", False), ("soon", True)]:
+        link = f"[{words_of_link}](docs/measurements/fresh-debian.md)"
+        expect(f"readme_figures: a demo of {words_of_link}", is_right == (
+            not list(readme_figures.demo_faults(link, "| `./demo.sh` | 116 s |"))))
+    rule = "| share of it for the longest cycle | 0.9 |"
+    for most, is_right in [(450, True), (475, False)]:
+        text = f"takes at most {most} us; the default deadline is 500 us"
+        expect(f"readme_figures: at most {most} us",
+               is_right == (not list(readme_figures.deadline_faults(text, rule))))
+
+
+def readme_example_notices():
+    claim = readme_example.REVIEW.search(
+        "In the example two lines stay, the limits of one axes and `stop_reversal`: more")
+    axis, key = "init: X: {slot: 0, kind: linear, ...", "init: stop_reversal: jerk_limited"
+    for lines, is_right in [([axis, key], True), ([axis], False), ([axis, key, key], False),
+                            ([axis, axis], False), ([key, "init: tool: true"], False)]:
+        expect(f"readme_example: {lines}",
+               is_right == (not list(readme_example.review_faults(claim, lines))))
+    own = {"hashes": {"kinematics": "a"}, "tools": [{"number": 1, "length_mm": 140.0}]}
+    for ours, is_right in [(own, True), ({**own, "hashes": {"kinematics": "b"}}, False),
+                           ({**own, "tools": [{"number": 1, "length_mm": 141.0}]}, False)]:
+        expect(f"readme_example: {ours}",
+               is_right == (not list(readme_example.machine_faults(ours, own))))
+    right = {"height": "29", "stop": "27", "braking": "17", "proof": "34", "with_jerk": "26"}
+    machine = {"axes": [{"name": "Z", "stopping_distance": 17.4}]}
+    stop = {"axes": {"Z_mm": -230.9}, "pairs": [{"clearance_mm": 29.1}],
+            "why": {"needed_mm": 33.7, "reach": {"Z_mm": [-257.7, -230.9]}}}
+    limited = {"pairs": [{"clearance_mm": 26.1}]}
+    expect("readme_example: distances",
+           not list(readme_example.distance_faults(right, machine, stop, limited)))
+    for name in right:
+        wrong = {**right, name: "3"}
+        expect(f"readme_example: the distance {name}",
+               len(list(readme_example.distance_faults(wrong, machine, stop, limited))) == 1)
 
 
 def guide_blocks_name_user_and_mark():
@@ -362,6 +425,8 @@ def main():
     contraction_flags_notice()
     shared_copies_notice()
     readme_blocks_are_found()
+    readme_figures_notice()
+    readme_example_notices()
     guide_blocks_name_user_and_mark()
     links_are_found()
     words_notice()
