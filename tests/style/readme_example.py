@@ -13,7 +13,7 @@ REVIEW = re.compile(r"In the example (\w+) lines stay, the limits of (\w+) axes 
 UNCHECKED = re.compile(r"states why (\w+) pairs need no check")
 DISTANCES = re.compile(
     r"stops the cutter (?P<height>\d+) mm above the plate\. The longest stop from there takes "
-    r"(?P<stop>\d+) mm: (?P<braking>\d+) mm of braking .* A quick proof needs (?P<proof>\d+) mm; "
+    r"(?P<stop>\d+) mm: (?P<braking>\d+) mm of braking .* The quick proof needs (?P<proof>\d+) mm; "
     r".*\(`(?P<key>free_jerk: limited)` below `guard:`\), (?P<with_jerk>\d+) mm suffice")
 
 
