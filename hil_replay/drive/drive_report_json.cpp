@@ -7,7 +7,6 @@
 #include "firmware_if/cli/document_json.hpp"
 #include "firmware_if/protocol/obeyed_by.hpp"
 #include "hil_replay/drive/drive_report.hpp"
-#include "hil_replay/replay/escapes_json.hpp"
 #include "hil_replay/replay/replay_csv.hpp"
 #include "hil_replay/replay/stop_cause_json.hpp"
 

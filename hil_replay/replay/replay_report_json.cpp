@@ -4,7 +4,6 @@
 #include "core/base/sincos.hpp"
 #include "firmware_if/cli/document_json.hpp"
 #include "firmware_if/protocol/obeyed_by.hpp"
-#include "hil_replay/replay/escapes_json.hpp"
 #include "hil_replay/replay/limits_json.hpp"
 #include "hil_replay/replay/pairs_at_stop.hpp"
 #include "hil_replay/replay/plan_json.hpp"

@@ -5,6 +5,7 @@
 
 #include "core/base/sincos.hpp"
 #include "firmware_if/cli/limit_text.hpp"
+#include "hil_replay/replay/format_escapes.hpp"
 #include "hil_replay/replay/replay_csv.hpp"
 
 namespace axg {
@@ -131,6 +132,18 @@ Json why_json(const Machine& machine, const StopWhy& why) {
         add_reach(machine, why, out);
     }
     out["remedies"] = remedies_json(why);
+    return out;
+}
+
+Json escapes_json(const Machine& machine, const Escapes& escapes) {
+    auto out = Json::array();
+    for (const EscapeJog& jog : escapes.list()) {
+        const bool rotary = machine.axes[jog.axis].kind == AxisKind::rotary;
+        out.push_back({{"axis", machine.axes[jog.axis].name},
+                       {"direction", jog.is_negative ? "-" : "+"},
+                       {rotary ? "step_deg" : "step_mm", step_in_file_units(machine, jog)},
+                       {"clearance_mm", jog.clearance_mm}});
+    }
     return out;
 }
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a stop is about, as JSON, the same for a replay and a drive. Its keys:
-// docs/reference/commands.md.
+// What a stop is about and the ways out of it, as JSON, the same for a replay and a drive. Keys:
+// docs/reference/json.md.
 #pragma once
 
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 
+#include "core/guard/escape.hpp"
 #include "core/guard/monitor.hpp"
 #include "core/machine/machine.hpp"
 #include "firmware_if/receiver/receiver_faults.hpp"
@@ -26,5 +27,8 @@ void add_program_line(const ProgramLines& lines, std::int64_t time_us, nlohmann:
 
 /// Keys: docs/reference/json.md.
 [[nodiscard]] nlohmann::ordered_json why_json(const Machine& machine, const StopWhy& why);
+
+/// One object a way out: axis, direction, step_mm or step_deg, clearance_mm.
+[[nodiscard]] nlohmann::ordered_json escapes_json(const Machine& machine, const Escapes& escapes);
 
 }  // namespace axg
