@@ -7,10 +7,12 @@
 #include <array>
 #include <nlohmann/json.hpp>
 #include <utility>
+#include <vector>
 
 #include "config/text/quote_text.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/guard_exit.hpp"
+#include "firmware_if/cli/why_sentences.hpp"
 
 namespace axg {
 namespace {
@@ -294,17 +296,39 @@ double mm_at(const Json& json, const char* key) {
     return json.at(key).get<double>();
 }
 
+/// What a reader needs first, as a replay prints it.
+std::string sentences_of(const Json& json, const Json& why, const Json& pair) {
+    std::string out;
+    if (pair.is_null()) {
+        return out;
+    }
+    const std::vector<std::string> sentences =
+        why_sentences({.cause = is_at(why, "list_full") ? WhyCause::capacity : WhyCause::not_proven,
+                       .a = escaped(pair[0].get<std::string>()),
+                       .b = escaped(pair[1].get<std::string>()),
+                       .is_of_stop = json.at("mode") == "stoppable",
+                       .available_mm = mm_at(why, "available_mm"),
+                       .needed_mm = mm_at(why, "needed_mm"),
+                       .margin_mm = mm_at(why, "margin_mm")});
+    for (const std::string& sentence : sentences) {
+        out += "  " + sentence + "\n";
+    }
+    return out;
+}
+
 /// Lines below the stop or the withheld permit; none where no distances are known.
-std::string words_of_why(const Json& why) {
+std::string words_of_why(const Json& json, const char* key, const char* pair) {
+    const Json& why = json.at(key);
     if (why.is_null()) {
         return {};
     }
     const double available_mm = mm_at(why, "available_mm");
     const bool is_all = available_mm < mm_at(why, "within_mm");
-    std::string out = fmt::format(
-        "  needs {:.4f} mm and has {}", mm_at(why, "needed_mm"),
-        available_mm <= 0 ? "none"
-                          : fmt::format("{}{:.4f} mm", is_all ? "" : "at least ", available_mm));
+    std::string out = sentences_of(json, why, json.at(pair));
+    out += fmt::format("  needs {:.4f} mm and has {}", mm_at(why, "needed_mm"),
+                       available_mm <= 0
+                           ? "none"
+                           : fmt::format("{}{:.4f} mm", is_all ? "" : "at least ", available_mm));
     out +=
         why.at("tool").is_null() ? "\n    " : fmt::format(", tool {}\n    ", count_at(why, "tool"));
     for (const WhyPart& part : kWhyParts) {
@@ -342,8 +366,8 @@ std::string words_of_guard(const Json& json) {
 }
 
 std::string words_of_view(const Json& json) {
-    std::string out = words_of_why(json.at("why")) + words_of_withheld(json) +
-                      words_of_why(json.at("withheld_why"));
+    std::string out = words_of_why(json, "why", "pair") + words_of_withheld(json) +
+                      words_of_why(json, "withheld_why", "withheld_pair");
     if (count_at(json, "age_ms") > kHeldMs) {
         out += fmt::format("no update for {} ms: the bus thread of the guard is blocked\n",
                            count_at(json, "age_ms"));

@@ -163,7 +163,7 @@ std::string describe_stops(const DriveReport& report) {
         stops.push_back({{"time_us", stop.snapshot.arrived_us}, {"reason", reason_text(stop)}});
         add_program_line(report.lines, stop.snapshot.latched_us, stops.back());
         if (report.why) {
-            stops.back()["why"] = why_json(report.machine, *report.why);
+            stops.back()["why"] = page_why_json(report.machine, *report.why);
         }
     }
     return stops.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);

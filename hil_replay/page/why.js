@@ -13,17 +13,6 @@ const WHY_PARTS = [
   ["arithmetic_mm", "arithmetic"],
 ];
 
-const WHY_CAUSES = {
-  margin: "nearer than its margin",
-  contained: "one body is inside the other",
-  reach: "a position that the axes can reach is too near",
-  halving: "the halving of the reach was not finished",
-  shared: "the lists of the cycle were shared with other pairs",
-  capacity: "a list of the engine was full",
-  not_known: "too little is known of the motion to come",
-  not_proven: "no proof was found",
-};
-
 /** [label, mm, class] of each row; none where the stop is no matter of distance. */
 function whyRows(why) {
   if (why.needed_mm === undefined) return [];
@@ -47,6 +36,7 @@ function whySentences(why) {
     out.push(`halving: ${why.queries} queries; the first part left open needs
               ${mm(why.open.needed_mm)} and has ${mm(why.open.available_mm)}`);
   }
+  if (why.full_list) out.push(`a list of the engine was full: ${why.full_list}`);
   const {remedies} = why;
   if (!remedies) return out;
   const proven = [];
@@ -70,8 +60,7 @@ function writeWhy(why) {
   const byId = (id) => document.getElementById(id);
   byId("why_section").hidden = !why;
   if (!why) return;
-  const tool = why.tool === undefined ? "" : `, tool ${why.tool}`;
-  byId("why_sum").textContent = `${why.pair}${tool}: ${WHY_CAUSES[why.cause] || why.cause}`;
+  byId("why_sum").textContent = `${why.pair}: ${why.sentences.join("; ")}`;
   const rows = whyRows(why), most = Math.max(1e-9, ...rows.map(([, value]) => value));
   byId("why_parts").tBodies[0].replaceChildren(...rows.map(([label, value, name]) => {
     const row = document.createElement("tr"), head = document.createElement("th");

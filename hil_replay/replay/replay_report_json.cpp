@@ -225,10 +225,19 @@ ReplayDocument describe_replay(const ReplayReport& report) {
         stops.push_back(stop_json(report, stop));
     }
     out["stop_count"] = run.stop_count();
-    Json shown = out["stops"];  // on a page
+    Json shown = out["stops"];  // on a page, which has the sentences too
+    const auto add_sentences = [&](const StopEvent& stop, Json& on_page) {
+        if (const auto why = report.whys.find(&stop); why != report.whys.end()) {
+            on_page["why"] = page_why_json(machine, why->second);
+        }
+    };
+    for (std::size_t i = 0; i < run.stops().size(); ++i) {
+        add_sentences(run.stops()[i], shown[i]);
+    }
     if (run.withheld().samples != 0) {
         out["kept_back"] = stop_json(report, run.withheld());
         shown.push_back(out["kept_back"]);
+        add_sentences(run.withheld(), shown.back());
         shown.back()["withheld"] = true;
     }
     return {text_of(out), shown.dump(-1, ' ', false, Json::error_handler_t::replace)};

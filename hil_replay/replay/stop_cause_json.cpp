@@ -135,6 +135,12 @@ Json why_json(const Machine& machine, const StopWhy& why) {
     return out;
 }
 
+Json page_why_json(const Machine& machine, const StopWhy& why) {
+    Json out = why_json(machine, why);
+    out["sentences"] = why_sentences(machine, why);
+    return out;
+}
+
 Json escapes_json(const Machine& machine, const Escapes& escapes) {
     auto out = Json::array();
     for (const EscapeJog& jog : escapes.list()) {

@@ -27,6 +27,8 @@ void add_program_line(const ProgramLines& lines, std::int64_t time_us, nlohmann:
 
 /// Keys: docs/reference/json.md.
 [[nodiscard]] nlohmann::ordered_json why_json(const Machine& machine, const StopWhy& why);
+/// The same with `sentences`, for a page: documents have none.
+[[nodiscard]] nlohmann::ordered_json page_why_json(const Machine& machine, const StopWhy& why);
 
 /// One object a way out: axis, direction, step_mm or step_deg, clearance_mm.
 [[nodiscard]] nlohmann::ordered_json escapes_json(const Machine& machine, const Escapes& escapes);

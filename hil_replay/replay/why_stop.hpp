@@ -12,22 +12,11 @@
 #include "core/collision/engine.hpp"
 #include "core/guard/distance_need.hpp"
 #include "core/guard/monitor.hpp"
+#include "firmware_if/cli/why_sentences.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
 #include "hil_replay/trace/limit_survey.hpp"
 
 namespace axg {
-
-enum class WhyCause : std::uint8_t {
-    margin,      // contact mode: the pair is nearer than its margin
-    contained,   // one body is inside the other: no distance is enough
-    reach,       // a position in the reach is nearer than the margin
-    halving,     // a larger plan proves it: halving was not finished
-    shared,      // by itself it is proven: the lists of the cycle were shared
-    capacity,    // a list of the engine was full
-    not_known,   // too little was known of the motion: nothing was queried
-    not_proven,  // none of these was found
-};
-[[nodiscard]] const char* to_text(WhyCause cause) noexcept;
 
 struct StopWhy {
     WhyCause cause = WhyCause::margin;
@@ -69,7 +58,9 @@ struct WhySources {
 /// Nothing: the stop is not about the distance of a pair.
 /// Cost: as find_remedies; milliseconds to a second.
 [[nodiscard]] std::optional<StopWhy> why_of(const WhySources& sources, const StopFacts& stop);
-/// Lines of a report, each with its end.
+/// The plain sentences of a stop, without indent and end.
+[[nodiscard]] std::vector<std::string> why_sentences(const Machine& machine, const StopWhy& why);
+/// Lines of a report, each with its end: the sentences, then lists, parts and remedies.
 [[nodiscard]] std::string format_why(const Machine& machine, const StopWhy& why);
 
 }  // namespace axg

@@ -72,28 +72,6 @@ std::string remedies_text(const StopWhy& why) {
 
 }  // namespace
 
-const char* to_text(WhyCause cause) noexcept {
-    switch (cause) {
-        case WhyCause::margin:
-            return "margin";
-        case WhyCause::contained:
-            return "contained";
-        case WhyCause::reach:
-            return "reach";
-        case WhyCause::halving:
-            return "halving";
-        case WhyCause::shared:
-            return "shared";
-        case WhyCause::capacity:
-            return "capacity";
-        case WhyCause::not_known:
-            return "not_known";
-        case WhyCause::not_proven:
-            break;
-    }
-    return "not_proven";
-}
-
 const char* full_list(QueryStatus status) noexcept {
     switch (status) {
         case QueryStatus::too_many_node_pairs:
@@ -111,8 +89,29 @@ const char* full_list(QueryStatus status) noexcept {
     }
 }
 
+std::vector<std::string> why_sentences(const Machine& machine, const StopWhy& why) {
+    const auto name = [&](std::uint32_t index) {
+        const Body& body = machine.bodies[index];
+        return body.is_tool && why.tool != kNoIndex
+                   ? fmt::format("{} (tool {})", body.name, machine.tools[why.tool].number)
+                   : body.name;
+    };
+    const Pair& pair = machine.pairs[why.pair];
+    return why_sentences({.cause = why.cause,
+                          .a = name(pair.a),
+                          .b = name(pair.b),
+                          .is_of_stop = why.has_reach,
+                          .available_mm = why.available_mm,
+                          .needed_mm = why.need.sum_mm(),
+                          .margin_mm = why.need.margin_mm});
+}
+
 std::string format_why(const Machine& machine, const StopWhy& why) {
-    std::string text = fmt::format("  why ({}): {} ", to_text(why.cause), name_of(machine, why));
+    std::string text;
+    for (const std::string& sentence : why_sentences(machine, why)) {
+        text += "  " + sentence + "\n";
+    }
+    text += fmt::format("  why ({}): {} ", to_text(why.cause), name_of(machine, why));
     if (why.cause == WhyCause::contained) {
         return text + "is no matter of distance: one body is inside the other\n";
     }

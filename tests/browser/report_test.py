@@ -80,6 +80,8 @@ def check_why(browser, results, mode):
     for key in ("needed_mm", "available_mm"):
         check(f"{why[key]:.4f} mm" in rows, f"{mode}: no {key} in {rows}")
     check(why["pair"] in browser.find_element("id", "why_sum").text, f"{mode}: why without a pair")
+    for sentence in browser.execute_script("return axguard.stops[0].why.sentences"):
+        check(sentence in browser.find_element("id", "why_sum").text, f"{mode}: no {sentence!r}")
     boxes, outside, hidden = browser.execute_script("""
         const view = axguard.view, stop = axguard.stops[0], boxes = stop.why.reach_bodies || [];
         let outside = 0;

@@ -163,6 +163,8 @@ TEST_F(StatusLineTest, DistancesInWordsAreThoseOfAReplay) {
     EXPECT_EQ(words().text.find("needs"), std::string::npos) << "not known";
     why.stop = a_why();
     EXPECT_NE(words().text.find(
+                  "  cutter and plate could not be proven clear\n"
+                  "  they are at least 6.5000 mm apart, the proof of a stop needs up to 7.0130 mm\n"
                   "  needs 7.0130 mm and has 6.5000 mm, tool 1\n"
                   "    motion until braking 1.2500, braking 3.5000, uncertainty of position "
                   "0.0125, of speed 0.2500, margin 2, arithmetic 0.0005 mm\n"
@@ -175,6 +177,9 @@ TEST_F(StatusLineTest, DistancesInWordsAreThoseOfAReplay) {
     why.stop->is_list_full = true;
     EXPECT_NE(words().text.find("    a list of the engine was full (cycle: in the machine file)\n"),
               std::string::npos);
+    EXPECT_NE(words().text.find("\n  cutter and plate could not be proven clear within the time of "
+                                "a cycle\n"),
+              std::string::npos);
     EXPECT_EQ(json()["why"]["list_full"], true);
     why.stop->distances.available_mm = 0;
     EXPECT_NE(words().text.find("and has none"), std::string::npos);
@@ -182,7 +187,8 @@ TEST_F(StatusLineTest, DistancesInWordsAreThoseOfAReplay) {
     view.withheld = {WithheldPermit::Why::not_proven, StopReason::predicted, 0};
     why.withheld = a_why();
     why.withheld->is_jog = why.withheld->is_whole = true;
-    EXPECT_NE(words().text.find("predicted: cutter - plate\n  needs 7.0130 mm"), std::string::npos)
+    EXPECT_NE(words().text.find("predicted: cutter - plate\n  cutter and plate could not"),
+              std::string::npos)
         << words().text;
     EXPECT_NE(words().text.find("motion to standstill 1.2500, clearance to keep in this jog 2,"),
               std::string::npos);

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/cli/why_sentences.hpp"
+
+#include <fmt/format.h>
+
+namespace axg {
+namespace {
+
+std::string cause_sentence(const WhyFacts& facts) {
+    const std::string pair = facts.a + " and " + facts.b;
+    switch (facts.cause) {
+        case WhyCause::margin:
+            return pair + " are not proven to be farther apart than their margin";
+        case WhyCause::contained:
+            return "one of " + pair + " is inside the other";
+        case WhyCause::reach:
+            return pair + " can come too near before the axes stand";
+        case WhyCause::halving:
+            return pair + " need more steps of proof than the time of a cycle allows";
+        case WhyCause::shared:
+            return pair + " are proven clear alone, but not in a cycle with all other pairs";
+        case WhyCause::capacity:
+            return pair + " could not be proven clear within the time of a cycle";
+        case WhyCause::not_known:
+            return "too little is known of the motion to come to prove a stop of " + pair;
+        case WhyCause::not_proven:
+            break;
+    }
+    return pair + " could not be proven clear";
+}
+
+}  // namespace
+
+const char* to_text(WhyCause cause) noexcept {
+    switch (cause) {
+        case WhyCause::margin:
+            return "margin";
+        case WhyCause::contained:
+            return "contained";
+        case WhyCause::reach:
+            return "reach";
+        case WhyCause::halving:
+            return "halving";
+        case WhyCause::shared:
+            return "shared";
+        case WhyCause::capacity:
+            return "capacity";
+        case WhyCause::not_known:
+            return "not_known";
+        case WhyCause::not_proven:
+            break;
+    }
+    return "not_proven";
+}
+
+std::vector<std::string> why_sentences(const WhyFacts& facts) {
+    std::vector<std::string> out{cause_sentence(facts)};
+    if (facts.cause == WhyCause::contained || facts.cause == WhyCause::not_known) {
+        return out;
+    }
+    const std::string available =
+        facts.available_mm <= 0
+            ? "no distance between them is proven"
+            : fmt::format("they are at least {:.4f} mm apart", facts.available_mm);
+    out.push_back(available +
+                  (facts.is_of_stop
+                       ? fmt::format(", the proof of a stop needs up to {:.4f} mm", facts.needed_mm)
+                       : fmt::format(", their margin is {:g} mm", facts.margin_mm)));
+    return out;
+}
+
+}  // namespace axg

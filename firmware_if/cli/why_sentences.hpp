@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// Why a pair was not proven, as plain sentences. One wording for reports, pages and the status of a
+// running guard; lists and parts of a distance are details that each of them adds.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace axg {
+
+enum class WhyCause : std::uint8_t {
+    margin,      // contact mode: the pair is nearer than its margin
+    contained,   // one body is inside the other: no distance is enough
+    reach,       // a position in the reach is nearer than the margin
+    halving,     // a larger plan proves it: halving was not finished
+    shared,      // by itself it is proven: the lists of the cycle were shared
+    capacity,    // a list of the engine was full
+    not_known,   // too little was known of the motion: nothing was queried
+    not_proven,  // none of these was found
+};
+[[nodiscard]] const char* to_text(WhyCause cause) noexcept;
+
+struct WhyFacts {
+    WhyCause cause = WhyCause::not_proven;
+    std::string a, b;         // the bodies, as a reader knows them
+    bool is_of_stop = true;   // false: of the sampled pose alone
+    double available_mm = 0;  // certified lower bound of the distance; 0: none
+    double needed_mm = 0;     // at most, by the proof of a stop
+    double margin_mm = 0;     // of the pair
+};
+
+/// One or two sentences: what could not be proven; then the distance, where it is about one.
+[[nodiscard]] std::vector<std::string> why_sentences(const WhyFacts& facts);
+
+}  // namespace axg

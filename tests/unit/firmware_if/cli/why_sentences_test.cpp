@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a reader is told first of a pair that was not proven: each cause has a sentence of its own,
+// none names a list of the engine, and the distance follows where the stop is about one.
+#include "firmware_if/cli/why_sentences.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+
+namespace axg {
+namespace {
+
+WhyFacts facts_of(WhyCause cause) {
+    return {.cause = cause,
+            .a = "cutter (tool 1)",
+            .b = "plate",
+            .available_mm = 29.147,
+            .needed_mm = 33.68621,
+            .margin_mm = 2};
+}
+
+TEST(WhySentences, AFullListIsTimeThatRanOut) {
+    const auto sentences = why_sentences(facts_of(WhyCause::capacity));
+    ASSERT_EQ(sentences.size(), 2U);
+    EXPECT_EQ(sentences[0],
+              "cutter (tool 1) and plate could not be proven clear within the time of a cycle");
+    EXPECT_EQ(sentences[1],
+              "they are at least 29.1470 mm apart, the proof of a stop needs up to 33.6862 mm");
+}
+
+TEST(WhySentences, EachCauseHasItsOwnAndNamesBothBodies) {
+    std::set<std::string> all;
+    for (int i = 0; i <= static_cast<int>(WhyCause::not_proven); ++i) {
+        const auto cause = static_cast<WhyCause>(i);
+        const auto sentences = why_sentences(facts_of(cause));
+        EXPECT_TRUE(all.insert(sentences[0]).second) << sentences[0];
+        EXPECT_NE(sentences[0].find("cutter (tool 1) and plate"), std::string::npos)
+            << sentences[0];
+        EXPECT_EQ(sentences[0].find("list"), std::string::npos) << sentences[0];
+        const bool is_about_distance = cause != WhyCause::contained && cause != WhyCause::not_known;
+        EXPECT_EQ(sentences.size(), is_about_distance ? 2U : 1U) << to_text(cause);
+        for (const std::string& sentence : sentences) {
+            EXPECT_LE(sentence.size(), 98U) << "with its indent within 100 columns";
+        }
+    }
+}
+
+TEST(WhySentences, OfAPoseTheMarginIsTheNeed) {
+    WhyFacts facts = facts_of(WhyCause::margin);
+    facts.is_of_stop = false;
+    EXPECT_EQ(why_sentences(facts)[1], "they are at least 29.1470 mm apart, their margin is 2 mm");
+}
+
+TEST(WhySentences, NothingIsClaimedOfADistanceThatIsNotProven) {
+    WhyFacts facts = facts_of(WhyCause::reach);
+    facts.available_mm = 0;
+    EXPECT_EQ(why_sentences(facts)[1],
+              "no distance between them is proven, the proof of a stop needs up to 33.6862 mm");
+}
+
+}  // namespace
+}  // namespace axg
