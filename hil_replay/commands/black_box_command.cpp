@@ -149,7 +149,7 @@ std::optional<StopWhy> why_of_refused(const ReplayedBlackBox& result, const WhyS
 }
 
 void print_why(const ReplayedBlackBox& result, const std::optional<StopWhy>& why,
-               const ProgramLines& lines, const Machine& machine, std::FILE* words) {
+               const ProgramLines& lines, const Machine& machine, Detail detail, std::FILE* words) {
     if (!result.recorded && result.refused) {
         fmt::print(words, "permit withheld to the end: {}\n",
                    reason_text(result.refused->reason, result.refused->pair, machine, ", "));
@@ -158,7 +158,7 @@ void print_why(const ReplayedBlackBox& result, const std::optional<StopWhy>& why
         fmt::print(words, "{}", format_step_at(lines, result.refused->snapshot.arrived_us));
     }
     if (why) {
-        fmt::print(words, "{}", format_why(machine, *why));
+        fmt::print(words, "{}", format_why(machine, *why, detail));
     }
 }
 
@@ -243,7 +243,7 @@ int judge(const BlackBoxArguments& arguments, BlackBoxFile& black_box, const Loa
     print_sent(result, words);
     print_stop(result, machine, words);
     const std::optional<StopWhy> why = why_of_refused(result, {loaded, chain.engine()});
-    print_why(result, why, lines, machine, words);
+    print_why(result, why, lines, machine, arguments.detail, words);
     print_times(result, words);
     if (!black_box.error().empty()) {
         fmt::print(stderr, "{}\n", black_box.error());

@@ -7,6 +7,7 @@
 #include "firmware_if/cli/json_output.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
 #include "hil_replay/place/program_finder.hpp"
+#include "hil_replay/replay/why_stop.hpp"
 
 namespace axg {
 
@@ -15,6 +16,7 @@ struct BlackBoxArguments {
     std::string frames_out{};          // candump log of every frame in it; empty: none
     bool any_machine = false;          // judge with another machine than the dump's
     ProgramFinder* program = nullptr;  // opened; null: no program
+    Detail detail = Detail::brief;     // of the reason
     JsonOutput json{};
 };
 

@@ -23,6 +23,7 @@
 #include "firmware_if/setup/guard_parts.hpp"
 #include "firmware_if/system/real_time.hpp"
 #include "hil_replay/board/socket_clock.hpp"
+#include "hil_replay/commands/details_option.hpp"
 #include "hil_replay/commands/drive_command.hpp"
 #include "hil_replay/drive/bus_drive.hpp"
 #include "hil_replay/drive/path_record.hpp"
@@ -268,7 +269,7 @@ int run_bus_drive(const DriveArguments& arguments) {
     }
     const int exit_code = exit_code_of_bus(arguments, machine, result, report.contact.has_value());
     if (result.drive.encoded.status == EncodeStatus::ok) {
-        print_drive(report, arguments.json.words());
+        print_drive(report, detail_of(arguments.has_details), arguments.json.words());
     }
     return write_outputs(arguments, loaded, report, samples) ? exit_code : kExitInternal;
 }

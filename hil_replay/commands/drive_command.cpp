@@ -26,6 +26,7 @@
 #include "firmware_if/setup/choose_engine.hpp"
 #include "firmware_if/setup/guard_parts.hpp"
 #include "hil_replay/commands/commands.hpp"
+#include "hil_replay/commands/details_option.hpp"
 #include "hil_replay/commands/drive_command.hpp"
 #include "hil_replay/drive/drive_report.hpp"
 #include "hil_replay/gcode/gcode_arguments.hpp"
@@ -155,14 +156,15 @@ int exit_code_of(const DriveArguments& arguments, const Machine& machine, const 
 
 bool write_page(const DriveArguments& arguments, const LoadedMachine& loaded,
                 const DriveReport& report, const PageSamples& samples) {
-    const RunPage page{loaded,
-                       samples,
-                       nullptr,
-                       loaded.machine.deadline_us,
-                       arguments.gcode.program,
-                       printed_text([&report](std::FILE* stream) { print_drive(report, stream); }),
-                       describe_stops(report),
-                       &report.lines};
+    const RunPage page{
+        loaded,
+        samples,
+        nullptr,
+        loaded.machine.deadline_us,
+        arguments.gcode.program,
+        printed_text([&report](std::FILE* stream) { print_drive(report, Detail::full, stream); }),
+        describe_stops(report),
+        &report.lines};
     return write_run_page(arguments.report, page, stderr);
 }
 
@@ -234,7 +236,7 @@ int write_results(const DriveArguments& arguments, const LoadedMachine& loaded,
                   const DriveReport& report, const DriveCsv& csv, PageRecorder* page,
                   int exit_code) {
     if (report.result.encoded.status == EncodeStatus::ok) {
-        print_drive(report, arguments.json.words());
+        print_drive(report, detail_of(arguments.has_details), arguments.json.words());
     }
     bool is_written = arguments.csv.empty() || write_whole_file(arguments.csv, csv.text(), stderr);
     is_written =
@@ -380,6 +382,7 @@ void add_drive(CommandLine& line) {
                        "write one CSV line per sample: true axes, board, permit");
     command.add_output("--report", arguments->report,
                        "write one HTML report: the machine in motion, clearances, stops");
+    add_details_option(command, arguments->has_details);
     add_json_option(command, arguments->json);
     const std::vector<GuardOption> of_the_guard{
         {mode, "--mode: pass it to axguardd run"},

@@ -20,7 +20,7 @@ struct DriveArguments {
     MachineOptions machine;
     GcodeArguments gcode;
     std::string engine, mode = "stoppable", faults, csv, report, bus;
-    bool obeys_cap = false, jogs_out = false;
+    bool obeys_cap = false, jogs_out = false, has_details = false;
     std::uint64_t seed = 1;
     JsonOutput json;
 };

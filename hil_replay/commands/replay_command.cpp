@@ -25,6 +25,7 @@
 #include "firmware_if/setup/guard_parts.hpp"
 #include "hil_replay/commands/black_box_command.hpp"
 #include "hil_replay/commands/commands.hpp"
+#include "hil_replay/commands/details_option.hpp"
 #include "hil_replay/page/pair_clearances.hpp"
 #include "hil_replay/page/run_page.hpp"
 #include "hil_replay/place/program_finder.hpp"
@@ -47,7 +48,7 @@ struct ReplayArguments {
     std::uint32_t multiprocessors = 0;
     double within_mm = 50.0;
     double arm_at_s = -1;  // negative: when it is ready
-    bool keep_going = false, lenient = false, is_realtime = false;
+    bool keep_going = false, lenient = false, is_realtime = false, has_details = false;
     JsonOutput json;
 };
 
@@ -107,8 +108,7 @@ void note_cycle(Outputs& outputs, const ReplayCycle& cycle) {
 }
 
 /// All that was asked for besides the words. False: something was not written.
-bool write_outputs(const ReplayArguments& arguments, const ReplayReport& report,
-                   const std::string& words, Outputs& outputs) {
+bool write_outputs(const ReplayArguments& arguments, const ReplayReport& report, Outputs& outputs) {
     const ReplayDocument document = describe_replay(report);
     bool written = write_json(arguments.json, document.text);
     if (outputs.csv && !outputs.csv->finish(stderr)) {
@@ -119,8 +119,11 @@ bool write_outputs(const ReplayArguments& arguments, const ReplayReport& report,
         written = false;
     }
     if (outputs.page) {
+        const auto print = [&report](std::FILE* stream) {
+            print_replay(report, Detail::full, stream);
+        };
         const RunPage page{report.loaded,      outputs.page->finish(), &report.run.cycles(),
-                           report.deadline_us, arguments.trace,        words,
+                           report.deadline_us, arguments.trace,        printed_text(print),
                            document.stops,     &report.lines};
         written = write_run_page(arguments.report, page, stderr) && written;
     }
@@ -207,6 +210,7 @@ int replay_dump(const ReplayArguments& arguments, LoadedMachine& loaded) {
                              .frames_out = arguments.frames_out,
                              .any_machine = arguments.lenient,
                              .program = program ? &*program : nullptr,
+                             .detail = detail_of(arguments.has_details),
                              .json = arguments.json},
                             loaded);
 }
@@ -303,10 +307,8 @@ int replay(const ReplayArguments& arguments) {
                         end,
                         std::move(lines)};
     explain_stops(report);
-    const std::string words =
-        printed_text([&report](std::FILE* stream) { print_replay(report, stream); });
-    fmt::print(arguments.json.words(), "{}", words);
-    const bool written = write_outputs(arguments, report, words, outputs);
+    print_replay(report, detail_of(arguments.has_details), arguments.json.words());
+    const bool written = write_outputs(arguments, report, outputs);
     int found = gpu_failed           ? kExitGpu
                 : !end.fault.empty() ? kExitCan
                                      : exit_code_of(run, arguments.is_realtime);
@@ -373,6 +375,7 @@ void add_replay(CommandLine& line) {
     const std::vector<Option> settings = add_gcode_settings(command, arguments->gcode);
     command.add_option("--device", arguments->device, "read only the frames of this interface");
     command.add_flag("--lenient", arguments->lenient, "skip and count invalid lines");
+    add_details_option(command, arguments->has_details);
     add_json_option(command, arguments->json);
     command.set_action([arguments, files = command.files(), program, settings] {
         const bool has_setting = std::any_of(settings.begin(), settings.end(),

@@ -37,7 +37,7 @@ std::string why_text(const DriveReport& report) {
     return "the last permit expired without renewal";
 }
 
-void print_guard_stop(const DriveReport& report, std::FILE* words) {
+void print_guard_stop(const DriveReport& report, Detail detail, std::FILE* words) {
     const DriveStop& stop = report.result.guard_stop;
     if (!has_reason(stop)) {
         return;
@@ -60,7 +60,7 @@ void print_guard_stop(const DriveReport& report, std::FILE* words) {
                    axis == kNoIndex ? "" : ", axis " + report.machine.axes[axis].name);
     }
     if (report.why) {
-        fmt::print(words, "{}", format_why(report.machine, *report.why));
+        fmt::print(words, "{}", format_why(report.machine, *report.why, detail));
     }
 }
 
@@ -82,9 +82,9 @@ void print_bus(const DriveReport& report, std::FILE* words) {
                static_cast<double>(wire.late_us_max) * 1e-3);
 }
 
-/// What each slow-down cost, the dearest first.
-void print_caps(const DriveReport& report, std::FILE* words) {
-    constexpr std::size_t kShown = 10;
+/// What each slow-down cost, the dearest first; in brief all of them together.
+void print_caps(const DriveReport& report, Detail detail, std::FILE* words) {
+    const std::size_t shown = detail == Detail::full ? 10 : 0;
     const DriveResult& result = report.result;
     fmt::print(words, "cap of {}: {} slow-downs, {:.3f} s lost; shortest permit {} samples\n",
                to_text(report.machine.guard.cap), result.slow_downs.size(), result.lost_s,
@@ -92,7 +92,7 @@ void print_caps(const DriveReport& report, std::FILE* words) {
     std::vector<SlowDown> dearest = result.slow_downs;
     std::stable_sort(dearest.begin(), dearest.end(),
                      [](const SlowDown& a, const SlowDown& b) { return a.lost_s > b.lost_s; });
-    for (std::size_t i = 0; i < std::min(kShown, dearest.size()); ++i) {
+    for (std::size_t i = 0; i < std::min(shown, dearest.size()); ++i) {
         const SlowDown& one = dearest[i];
         fmt::print(words, "  at {:.3f} s for {:.3f} s, down to {:.1f} % of rapid: {:.3f} s lost\n",
                    one.begin_s, one.seconds, 0.4 * one.least, one.lost_s);
@@ -102,7 +102,7 @@ void print_caps(const DriveReport& report, std::FILE* words) {
     }
 }
 
-void print_time(const DriveReport& report, std::FILE* words) {
+void print_time(const DriveReport& report, Detail detail, std::FILE* words) {
     const DriveResult& result = report.result;
     if (result.state == BoardState::waiting) {
         return;
@@ -120,7 +120,40 @@ void print_time(const DriveReport& report, std::FILE* words) {
     }
     fmt::print(words, "\n");
     if (report.machine.guard.cap != CapPromise::none) {
-        print_caps(report, words);
+        print_caps(report, detail, words);
+    }
+}
+
+/// Where the axes rest, and how far each pair is from contact; in brief those in contact, or the
+/// nearest one.
+void print_rest(const DriveReport& report, Detail detail, std::FILE* words) {
+    const Machine& machine = report.machine;
+    fmt::print(words, "at rest:");
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+        const Axis& axis = machine.axes[i];
+        fmt::print(words, "{} {} {:.4f}{}", i == 0 ? "" : ",", axis.name,
+                   in_file_units(axis, report.result.rest[i].position),
+                   axis.kind == AxisKind::rotary ? " deg" : " mm");
+    }
+    fmt::print(words, "\n");
+    const std::vector<PairAtRest> pairs = pairs_at_rest(report);
+    std::size_t shown = 0;
+    for (const PairAtRest& pair : pairs) {
+        if (detail == Detail::brief && shown != 0 && !pair.is_touching) {
+            continue;
+        }
+        ++shown;
+        const std::string name = pair_name(machine, pair.pair);
+        if (pair.is_touching) {
+            fmt::print(words, "  {:<18} TOUCHES\n", name);
+        } else {
+            fmt::print(words, "  {:<18} clearance at least {:.4f} mm, margin {:g} mm\n", name,
+                       pair.clearance_mm, machine.pairs[pair.pair].margin_mm);
+        }
+    }
+    if (pairs.size() > shown) {
+        fmt::print(words, "  and {} more pairs within {:g} mm: --details\n", pairs.size() - shown,
+                   kWithinMm);
     }
 }
 
@@ -165,7 +198,7 @@ std::int64_t stopped_at_us(const DriveResult& result) noexcept {
                                          : result.board_stop.asked_us;
 }
 
-void print_drive(const DriveReport& report, std::FILE* words) {
+void print_drive(const DriveReport& report, Detail detail, std::FILE* words) {
     const DriveResult& result = report.result;
     const Machine& machine = report.machine;
     fmt::print(words, "{}: {} samples, {} permits, {} frames {}, {} {}, seed {}\n", report.program,
@@ -185,7 +218,7 @@ void print_drive(const DriveReport& report, std::FILE* words) {
     } else {
         fmt::print(words, "STOP: {}\n{}", why_text(report),
                    format_step_at(report.lines, stopped_at_us(result)));
-        print_guard_stop(report, words);
+        print_guard_stop(report, detail, words);
     }
     if (report.bus) {
         print_bus(report, words);
@@ -204,26 +237,9 @@ void print_drive(const DriveReport& report, std::FILE* words) {
         fmt::print(words, "CONTACT in motion, {:.4f} s after the start: {}\n",
                    seconds_after_start(*report.contact), pair_name(machine, report.contact->pair));
     }
-    print_time(report, words);
-    fmt::print(words, "at rest:");
-    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-        const Axis& axis = machine.axes[i];
-        fmt::print(words, "{} {} {:.4f}{}", i == 0 ? "" : ",", axis.name,
-                   in_file_units(axis, result.rest[i].position),
-                   axis.kind == AxisKind::rotary ? " deg" : " mm");
-    }
-    fmt::print(words, "\n");
-    for (const PairAtRest& pair : pairs_at_rest(report)) {
-        const std::string name = pair_name(machine, pair.pair);
-        const double margin_mm = machine.pairs[pair.pair].margin_mm;
-        if (pair.is_touching) {
-            fmt::print(words, "  {:<18} TOUCHES\n", name);
-        } else {
-            fmt::print(words, "  {:<18} clearance at least {:.4f} mm, margin {:g} mm\n", name,
-                       pair.clearance_mm, margin_mm);
-        }
-    }
-    const std::string escapes = format_escapes(machine, report.escapes);
+    print_time(report, detail, words);
+    print_rest(report, detail, words);
+    const std::string escapes = format_escapes(machine, report.escapes, detail);
     if (result.state != BoardState::finished && !escapes.empty()) {
         fmt::print(words, "{}\n", escapes);
     }

@@ -45,7 +45,7 @@ struct DriveReport {
 /// asked.
 [[nodiscard]] std::int64_t stopped_at_us(const DriveResult& result) noexcept;
 
-void print_drive(const DriveReport& report, std::FILE* words);
+void print_drive(const DriveReport& report, Detail detail, std::FILE* words);
 [[nodiscard]] std::string describe_drive(const DriveReport& report);
 /// Stops of the guard as a page has them (RunPage::stops).
 [[nodiscard]] std::string describe_stops(const DriveReport& report);

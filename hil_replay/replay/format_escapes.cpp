@@ -33,7 +33,7 @@ Escapes find_escapes(const LoadedMachine& loaded, const Engine& engine,
     return finder->find(engine, containment_test, *certificate);
 }
 
-std::string format_escapes(const Machine& machine, const Escapes& escapes) {
+std::string format_escapes(const Machine& machine, const Escapes& escapes, Detail detail) {
     if (!escapes.is_clear) {
         return "no way out is proven: a pair is in contact or too near";
     }
@@ -45,10 +45,14 @@ std::string format_escapes(const Machine& machine, const Escapes& escapes) {
     }
     std::string text;
     for (const EscapeJog& jog : escapes.list()) {
-        text += fmt::format("{} {}{} ({:g} {}: clearance at least {:.4f} mm)",
-                            text.empty() ? "jog" : " or", machine.axes[jog.axis].name,
-                            jog.is_negative ? '-' : '+', step_in_file_units(machine, jog),
-                            is_rotary(machine, jog) ? "deg" : "mm", jog.clearance_mm);
+        const bool is_first = text.empty();
+        text += fmt::format("{} {}{}", is_first ? "jog" : " or", machine.axes[jog.axis].name,
+                            jog.is_negative ? '-' : '+');
+        if (is_first || detail == Detail::full) {
+            text += fmt::format(" ({:g} {}: clearance at least {:.4f} mm)",
+                                step_in_file_units(machine, jog),
+                                is_rotary(machine, jog) ? "deg" : "mm", jog.clearance_mm);
+        }
     }
     return text;
 }

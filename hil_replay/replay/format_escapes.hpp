@@ -9,6 +9,7 @@
 #include "core/guard/escape.hpp"
 #include "core/machine/axis_snapshot.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
+#include "hil_replay/replay/why_stop.hpp"
 
 namespace axg {
 
@@ -20,8 +21,9 @@ namespace axg {
 /// What one jog moves, mm or degrees.
 [[nodiscard]] double step_in_file_units(const Machine& machine, const EscapeJog& jog);
 
-/// "jog Z+ (1 mm: clear by at least 1.3000 mm)", the best first; or why there is none. Empty:
-/// nothing is near.
-[[nodiscard]] std::string format_escapes(const Machine& machine, const Escapes& escapes);
+/// "jog Z+ (1 mm: clearance at least 1.3000 mm)", the best first; or why there is none. In brief
+/// the others without their figures. Empty: nothing is near.
+[[nodiscard]] std::string format_escapes(const Machine& machine, const Escapes& escapes,
+                                         Detail detail);
 
 }  // namespace axg

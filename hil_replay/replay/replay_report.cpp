@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <span>
 #include <utility>
 
 #include "config/text/quote_text.hpp"
@@ -13,14 +15,11 @@
 #include "hil_replay/replay/format_escapes.hpp"
 #include "hil_replay/replay/limit_table.hpp"
 #include "hil_replay/replay/pairs_at_stop.hpp"
+#include "hil_replay/replay/replay_brief.hpp"
 #include "hil_replay/replay/replay_csv.hpp"
 
 namespace axg {
 namespace {
-
-double us(std::int64_t ns) {
-    return static_cast<double>(ns) * 1e-3;
-}
 
 std::string axes_text(const Machine& machine, const AxisSnapshot& snapshot) {
     if (snapshot.axis_count == 0) {
@@ -36,58 +35,68 @@ std::string axes_text(const Machine& machine, const AxisSnapshot& snapshot) {
     return text;
 }
 
-std::string triangles_text(const PairAtStop& pair) {
-    std::string text;
-    for (const TriangleIds& t : pair.triangles) {
-        text += fmt::format("{}{}/{}", text.empty() ? "" : " ", t.a, t.b);
-    }
-    return text + (pair.touching > pair.triangles.size() ? " ..." : "");
-}
-
-void print_stop(const ReplayReport& report, const StopEvent& stop, const char* title,
-                std::FILE* words) {
-    const Machine& machine = report.loaded.machine;
-    fmt::print(words, "\n{} {:.6f} s, sample {}: {}", title,
-               static_cast<double>(stop.time_us) * 1e-6, stop.snapshot.sample, reason_text(stop));
+std::string first_line(const ReplayReport& report, const StopEvent& stop, const char* title) {
+    std::string text =
+        fmt::format("{} {:.6f} s, sample {}: {}", title, static_cast<double>(stop.time_us) * 1e-6,
+                    stop.snapshot.sample, reason_text(stop));
     if (stop.pair != kNoIndex) {
-        fmt::print(words, ", {}", pair_name(machine, stop.pair));
+        text += ", " + pair_name(report.loaded.machine, stop.pair);
     }
     if (stop.reason == StopReason::input) {
         const FaultRow& row = fault_row(stop.fault);
-        fmt::print(words, ", {}: {}", row.name, row.meaning);
+        text += fmt::format(", {}: {}", row.name, row.meaning);
     }
+    return text;
+}
+
+void print_stop(const ReplayReport& report, const StopEvent& stop, const char* title, Detail detail,
+                std::FILE* words) {
+    const Machine& machine = report.loaded.machine;
+    fmt::print(words, "\n{}\n", first_line(report, stop, title));
     if (stop.reason == StopReason::left_limits) {
-        fmt::print(words, "\n  {}", limit_text(stop.limit, machine));
+        fmt::print(words, "  {}\n", limit_text(stop.limit, machine));
     }
-    fmt::print(words, "\n{}  {}\n", format_step_at(report.lines, stop.snapshot.arrived_us),
+    fmt::print(words, "{}  {}\n", format_step_at(report.lines, stop.snapshot.arrived_us),
                axes_text(machine, stop.snapshot));
     const auto why = report.whys.find(&stop);
+    const bool has_why = why != report.whys.end();
+    std::string reason = has_why ? format_why(machine, why->second, detail) : "";
     if (!is_about_distance(stop.reason)) {
-        if (why != report.whys.end()) {
-            fmt::print(words, "{}", format_why(machine, why->second));
-        }
+        fmt::print(words, "{}", reason);
         return;
     }
-    for (const PairAtStop& pair : pairs_at(report, stop)) {
-        if (pair.touching != 0) {
-            fmt::print(words, "  {:<18} {}{} pairs of triangles touch: {}\n",
-                       pair_name(machine, pair.pair), pair.is_cut_short ? "at least " : "",
-                       pair.touching, triangles_text(pair));
-        } else if (is_contained(pair)) {
-            const auto [inner, outer] = nested_names(machine, pair);
-            fmt::print(words, "  {:<18} {} is inside {}, their surfaces at least {:.4f} mm apart\n",
-                       pair_name(machine, pair.pair), inner, outer, pair.clearance_mm);
-        } else {
-            fmt::print(words, "  {:<18} clearance at least {:.4f} mm, margin {:g} mm\n",
-                       pair_name(machine, pair.pair), pair.clearance_mm, pair.margin_mm);
+    if (detail == Detail::full) {
+        for (const PairAtStop& pair : pairs_at(report, stop)) {
+            print_pair(machine, pair, detail, words);
         }
+    } else if (print_brief_pairs(report, stop, has_why, words)) {
+        reason.clear();  // a contact needs no further one
     }
-    if (why != report.whys.end()) {
-        fmt::print(words, "{}", format_why(machine, why->second));
-    }
-    const std::string escapes = format_escapes(machine, escapes_at(report, stop));
+    fmt::print(words, "{}", reason);
+    const std::string escapes = format_escapes(machine, escapes_at(report, stop), detail);
     if (!escapes.empty()) {
         fmt::print(words, "  {}\n", escapes);
+    }
+}
+
+/// The first stop as a block; in brief the next ones as lines.
+void print_stops(const ReplayReport& report, Detail detail, std::FILE* words) {
+    constexpr std::size_t kBriefStops = 5;
+    const std::span<const StopEvent> stops = report.run.stops();
+    const bool is_full = detail == Detail::full;
+    const std::size_t shown = is_full ? stops.size() : std::min(stops.size(), kBriefStops);
+    for (std::size_t i = 0; i < shown; ++i) {
+        if (is_full || i == 0) {
+            print_stop(report, stops[i], "STOP at", detail, words);
+        } else {
+            fmt::print(words, "{}\n", first_line(report, stops[i], "STOP at"));
+        }
+    }
+    const std::uint64_t count = report.run.stop_count();
+    if (!is_full && count > 1) {
+        fmt::print(words, "{} stops in all\n", count);
+    } else if (count > shown) {
+        fmt::print(words, "\n... and {} more\n", count - shown);
     }
 }
 
@@ -97,7 +106,7 @@ void print_times(const ReplayReport& report, std::FILE* words) {
                "MIN", "MAX", "p99");
     const auto line = [words](const std::string& name, const TimeHistogram& t) {
         fmt::print(words, "{:<17} {:>9.3f} {:>9.3f} {:>9.3f} {:>9.3f}", name, t.mean_ns() * 1e-3,
-                   us(t.least_ns()), us(t.most_ns()), us(t.at_share_ns(0.99)));
+                   us_of(t.least_ns()), us_of(t.most_ns()), us_of(t.at_share_ns(0.99)));
     };
     double sum_ns = 0;
     for (std::uint32_t i = 0; i < machine.pairs.size(); ++i) {
@@ -126,7 +135,7 @@ void print_not_proven(const ReplayReport& report, std::FILE* words) {
 void print_cycles(const ReplayReport& report, std::FILE* words) {
     const TimeHistogram& t = report.run.cycles();
     fmt::print(words, "us per cycle: median {:.1f}, p99 {:.1f}, max {:.1f}\n",
-               us(t.at_share_ns(0.5)), us(t.at_share_ns(0.99)), us(t.most_ns()));
+               us_of(t.at_share_ns(0.5)), us_of(t.at_share_ns(0.99)), us_of(t.most_ns()));
 }
 
 void print_batches(const ReplayReport& report, std::FILE* words) {
@@ -141,12 +150,6 @@ void print_proofs(const ReplayReport& report, std::FILE* words) {
     if (obeyed_by_refusal(machine).empty()) {
         fmt::print(words, "\nproven to standstill, at most {:.3f} ms after each sample\n",
                    free_seconds(machine, machine.can.permit_samples.least) * 1e3);
-    }
-    if (machine.guard.cap != CapPromise::none) {
-        fmt::print(words,
-                   "guard.cap: {}: not used, since the board of a trace cannot obey; axguard drive "
-                   "shows it\n",
-                   to_text(machine.guard.cap));
     }
     fmt::print(words, "plan: {}\n", format_plan(report.run.plan()));
     print_not_proven(report, words);
@@ -188,15 +191,10 @@ const char* format_no_stop(bool is_stoppable, bool is_obeyed) {
 }
 
 void print_deadline(const ReplayReport& report, std::FILE* words) {
-    const ReplayRun& run = report.run;
-    fmt::print(words, "deadline {} us: {} of {} cycles late{}\n", report.deadline_us,
-               run.overruns(), run.cycles().count(),
-               report.is_realtime || run.overruns() == 0
-                   ? ""
-                   : ", on this computer; counted, not judged (--realtime judges them)");
-    for (const SlowCycle& slow : run.slowest()) {
+    fmt::print(words, "{}\n", deadline_text(report));
+    for (const SlowCycle& slow : report.run.slowest()) {
         if (slow.spent_ns > report.deadline_us * 1000) {
-            fmt::print(words, "  {:.1f} us at {:.6f} s: {}\n", us(slow.spent_ns),
+            fmt::print(words, "  {:.1f} us at {:.6f} s: {}\n", us_of(slow.spent_ns),
                        static_cast<double>(slow.snapshot.arrived_us) * 1e-6,
                        axes_text(report.loaded.machine, slow.snapshot));
         }
@@ -215,7 +213,7 @@ void print_faults(const ReplayReport& report, std::FILE* words) {
 }
 
 /// What is said of a trace without a stop.
-void print_end(const ReplayReport& report, std::FILE* words) {
+void print_end(const ReplayReport& report, Detail detail, std::FILE* words) {
     const ReplayRun& run = report.run;
     if (!run.armed_us()) {
         fmt::print(words, "\nNO PERMIT: the guard was never armed: {}\n",
@@ -223,7 +221,7 @@ void print_end(const ReplayReport& report, std::FILE* words) {
                                    : "it was not ready for ten samples in a row");
     }
     if (run.end_in_motion().samples != 0) {
-        print_stop(report, run.end_in_motion(), "THE TRACE ENDS IN MOTION at", words);
+        print_stop(report, run.end_in_motion(), "THE TRACE ENDS IN MOTION at", detail, words);
         if (run.end_in_motion().cause != GuardFault::none) {
             fmt::print(words, "  without further frames the guard stops at {:.6f} s\n",
                        static_cast<double>(run.end_in_motion().stop_us) * 1e-6);
@@ -244,11 +242,23 @@ void print_cut(const TraceEnd& end, std::FILE* words) {
     }
 }
 
-void print_run(const ReplayReport& report, std::FILE* words) {
+void print_tables(const ReplayReport& report, std::FILE* words) {
     const ReplayRun& run = report.run;
-    const ReceiverCounters counters = run.input();
+    (run.is_stoppable()   ? print_proofs
+     : report.gpu.empty() ? print_times
+                          : print_batches)(report, words);
+    if (run.has_clearance_levels()) {
+        print_clearance_levels(report, words);
+    }
+    print_limits(report.loaded.machine, run.limits(), words);
+    print_deadline(report, words);
+}
+
+/// How much was read, and what is wrong with it.
+void print_input(const ReplayReport& report, std::FILE* words) {
+    const ReplayRun& run = report.run;
     fmt::print(words, "{}: {} frames, {} samples, {} lost, mode {}, engine {} {}\n", report.trace,
-               run.frame_count(), run.cycles().count(), counters.samples_lost,
+               run.frame_count(), run.cycles().count(), run.input().samples_lost,
                run.is_stoppable() ? "stoppable" : "contact", report.gpu.empty() ? "cpu" : "cuda",
                report.gpu.empty() ? report.engine.lanes() : report.gpu);
     if (report.end.lines_skipped != 0) {
@@ -260,37 +270,37 @@ void print_run(const ReplayReport& report, std::FILE* words) {
                    run.hashes_heard(), kHashParts);
     }
     print_faults(report, words);
-    if (counters.snapshots == 0 && run.stop_count() == 0) {
+}
+
+void print_run(const ReplayReport& report, Detail detail, std::FILE* words) {
+    const ReplayRun& run = report.run;
+    const Machine& machine = report.loaded.machine;
+    print_input(report, words);
+    if (run.input().snapshots == 0 && run.stop_count() == 0) {
         fmt::print(words,
                    "no complete sample of this machine's axes. Compare the ids, format and data "
                    "ids under 'can:' in the machine file with the trace.\n");
         return;
     }
-    if (const std::string refusal = obeyed_by_refusal(report.loaded.machine); !refusal.empty()) {
+    if (const std::string refusal = obeyed_by_refusal(machine); !refusal.empty()) {
         fmt::print(words, "\n{}\n", refusal);
     }
-    if (counters.snapshots != 0) {
-        (run.is_stoppable()   ? print_proofs
-         : report.gpu.empty() ? print_times
-                              : print_batches)(report, words);
-        if (run.has_clearance_levels()) {
-            print_clearance_levels(report, words);
-        }
-        print_limits(report.loaded.machine, run.limits(), words);
-        print_deadline(report, words);
+    if (run.is_stoppable() && machine.guard.cap != CapPromise::none) {
+        fmt::print(words,
+                   "guard.cap: {}: not used, since the board of a trace cannot obey; axguard drive "
+                   "shows it\n",
+                   to_text(machine.guard.cap));
+    }
+    if (run.input().snapshots != 0) {
+        (detail == Detail::full ? print_tables : print_summary)(report, words);
     }
     if (run.withheld().samples != 0) {
-        print_stop(report, run.withheld(), "NO PERMIT from", words);
+        print_stop(report, run.withheld(), "NO PERMIT from", detail, words);
         fmt::print(words, "  withheld for {} samples: the machine would not have moved\n",
                    run.withheld().samples);
     }
-    print_end(report, words);
-    for (const StopEvent& stop : run.stops()) {
-        print_stop(report, stop, "STOP at", words);
-    }
-    if (run.stop_count() > run.stops().size()) {
-        fmt::print(words, "\n... and {} more\n", run.stop_count() - run.stops().size());
-    }
+    print_end(report, detail, words);
+    print_stops(report, detail, words);
 }
 
 }  // namespace
@@ -310,8 +320,8 @@ void explain_stops(ReplayReport& report) {
     }
 }
 
-void print_replay(const ReplayReport& report, std::FILE* words) {
-    print_run(report, words);
+void print_replay(const ReplayReport& report, Detail detail, std::FILE* words) {
+    print_run(report, detail, words);
     print_cut(report.end, words);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a replay came to: the table of times as the seed paper prints it, the stop in words, and the
-// same as JSON.
+// What a replay came to: in brief, or with the table of times as the seed paper prints it; the stop
+// in words; and the same as JSON.
 #pragma once
 
 #include <cstdio>
@@ -34,7 +34,7 @@ struct ReplayReport {
 /// Fills in `whys`: before anything is printed. Cost: as why_of, once a stop.
 void explain_stops(ReplayReport& report);
 
-void print_replay(const ReplayReport& report, std::FILE* words);
+void print_replay(const ReplayReport& report, Detail detail, std::FILE* words);
 
 struct ReplayDocument {
     std::string text;

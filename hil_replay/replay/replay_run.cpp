@@ -196,6 +196,7 @@ void ReplayRun::on_cycle(const TimedCycle& cycle) {
     newest_ = chain_.snapshot();
     const CycleResult& result = cycle.result.result;
     limits_.add(newest_, guard_->guard().receiver().state() != ReceiverState::valid);
+    proven_ += result.has_permit && result.reason == StopReason::none ? 1 : 0;
     note_pairs();
     note_proofs(result);
     note_withheld(result);
@@ -289,7 +290,11 @@ void ReplayRun::note_proofs(const CycleResult& result) {
 void ReplayRun::note_withheld(const CycleResult& result) {
     const bool is_settled = is_stoppable() && chain_.stop_certificate()->cycle().is_settled;
     const bool is_trusted = guard_->guard().receiver().state() == ReceiverState::valid;
-    if (result.has_permit || guard_->is_stopped() || !is_trusted || !is_settled) {
+    if (result.has_permit || guard_->is_stopped()) {
+        return;
+    }
+    if (!is_trusted || !is_settled) {
+        ++early_;
         return;
     }
     if (withheld_.samples++ == 0) {

@@ -150,6 +150,11 @@ class ReplayRun {
     /// Whether it could have been.
     [[nodiscard]] bool was_ready() const noexcept { return was_ready_; }
     [[nodiscard]] std::uint64_t permits() const noexcept;  // sent
+    /// Samples whose verdict allows a permit, armed or not.
+    [[nodiscard]] std::uint64_t proven() const noexcept { return proven_; }
+    /// Samples without one because too little was known before them: no sign of a pair that is
+    /// near.
+    [[nodiscard]] std::uint64_t early() const noexcept { return early_; }
     [[nodiscard]] std::span<const PairStatistics> pairs() const noexcept { return pairs_; }
     [[nodiscard]] bool is_stoppable() const noexcept {
         return chain_.stop_certificate() != nullptr;
@@ -216,6 +221,7 @@ class ReplayRun {
     TimeHistogram cycles_;
     std::uint32_t hashes_heard_ = 0;  // a bit a part
     std::uint64_t overruns_ = 0, frame_count_ = 0, guard_frames_ = 0, permits_ = 0;
+    std::uint64_t proven_ = 0, early_ = 0;
     ReceiverCounters input_;                        // with permits_: of guards before this one
     std::optional<ReceiverCounters> input_at_end_;  // of a trace that ends in motion
     std::optional<std::int64_t> armed_us_;

@@ -18,6 +18,9 @@
 
 namespace axg {
 
+/// How much of a report is printed: one screen, or all of it.
+enum class Detail : std::uint8_t { brief, full };
+
 struct StopWhy {
     WhyCause cause = WhyCause::margin;
     std::uint32_t pair = kNoIndex;
@@ -60,7 +63,7 @@ struct WhySources {
 [[nodiscard]] std::optional<StopWhy> why_of(const WhySources& sources, const StopFacts& stop);
 /// The plain sentences of a stop, without indent and end.
 [[nodiscard]] std::vector<std::string> why_sentences(const Machine& machine, const StopWhy& why);
-/// Lines of a report, each with its end: the sentences, then lists, parts and remedies.
-[[nodiscard]] std::string format_why(const Machine& machine, const StopWhy& why);
+/// Lines of a report, each with its end: sentences and remedies; in full lists and parts too.
+[[nodiscard]] std::string format_why(const Machine& machine, const StopWhy& why, Detail detail);
 
 }  // namespace axg

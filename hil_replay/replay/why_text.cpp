@@ -10,6 +10,8 @@
 namespace axg {
 namespace {
 
+constexpr const char* kProvenWith = "this sample is proven with: ";
+
 std::string name_of(const Machine& machine, const StopWhy& why) {
     return pair_name(machine, why.pair) +
            (why.tool == kNoIndex ? "" : fmt::format(", tool {}", machine.tools[why.tool].number));
@@ -42,14 +44,17 @@ std::string parts_text(const StopWhy& why) {
                               need.margin_mm, need.arithmetic_mm);
 }
 
-std::string remedies_text(const StopWhy& why) {
+/// In brief without counts and lists.
+std::string remedies_text(const StopWhy& why, Detail detail) {
+    const bool is_full = detail == Detail::full;
     std::string text;
     const auto add = [&text](const std::string& remedy) {
         text += (text.empty() ? "" : "; ") + remedy;
     };
     const NeedRemedies& remedies = why.remedies;
     if (remedies.is_alone) {
-        add("the lists of the cycle for this pair alone (cycle: in the machine file)");
+        add(is_full ? "the lists of the cycle for this pair alone (cycle: in the machine file)"
+                    : "a cycle for this pair alone");
     }
     if (remedies.speed_share) {
         add(*remedies.speed_share > 0
@@ -60,14 +65,48 @@ std::string remedies_text(const StopWhy& why) {
         add(fmt::format("a margin of {:.3f} mm", *remedies.margin_mm));
     }
     if (remedies.queries) {
-        add(fmt::format(
-            "a larger plan, in which this pair takes {} queries (cycle: in the machine file)",
-            *remedies.queries));
+        add(is_full
+                ? fmt::format("a larger plan, in which this pair takes {} queries (cycle: in the "
+                              "machine file)",
+                              *remedies.queries)
+                : "a larger plan of the cycle");
     }
     if (remedies.are_other_limits) {
-        add("limits as this trace shows them: " + why.other_limits);
+        add(is_full ? "limits as this trace shows them: " + why.other_limits
+                    : "limits as in this trace");
     }
     return text;
+}
+
+/// Lists, parts and remedies.
+std::string format_parts(const Machine& machine, const StopWhy& why) {
+    std::string text = fmt::format("  why ({}): {} ", to_text(why.cause), name_of(machine, why));
+    if (why.cause == WhyCause::contained) {
+        return text + "is no matter of distance: one body is inside the other\n";
+    }
+    if (why.cause == WhyCause::not_known) {
+        return text + "was not queried: too little is known of the motion to come\n";
+    }
+    text += fmt::format("needs {:.4f} mm and {}\n    {}\n", why.need.sum_mm(), available_text(why),
+                        parts_text(why));
+    if (why.has_reach) {
+        text += why.worst_mm > 0
+                    ? fmt::format("    worst case found, to standstill: {:.4f} mm\n", why.worst_mm)
+                    : "    worst case found, to standstill: a contact\n";
+    }
+    if (why.open) {
+        text += fmt::format(
+            "    halving: {} queries; the first part left open needs {:.4f} mm and has {:.4f} mm\n",
+            why.queries, why.open->needed_mm, why.open->available_mm);
+    }
+    if (why.is_list_full) {
+        const char* const list = full_list(why.full);
+        text += fmt::format("    a list of the engine was full{} (cycle: in the machine file)\n",
+                            list == nullptr ? "" : fmt::format(": {}", list));
+    }
+    const std::string remedies = remedies_text(why, Detail::full);
+    return text + (remedies.empty() ? "    nothing that was tried proves it\n"
+                                    : fmt::format("    {}{}\n", kProvenWith, remedies));
 }
 
 }  // namespace
@@ -106,39 +145,16 @@ std::vector<std::string> why_sentences(const Machine& machine, const StopWhy& wh
                           .margin_mm = why.need.margin_mm});
 }
 
-std::string format_why(const Machine& machine, const StopWhy& why) {
+std::string format_why(const Machine& machine, const StopWhy& why, Detail detail) {
     std::string text;
     for (const std::string& sentence : why_sentences(machine, why)) {
         text += "  " + sentence + "\n";
     }
-    text += fmt::format("  why ({}): {} ", to_text(why.cause), name_of(machine, why));
-    if (why.cause == WhyCause::contained) {
-        return text + "is no matter of distance: one body is inside the other\n";
+    if (detail == Detail::full) {
+        return text + format_parts(machine, why);
     }
-    if (why.cause == WhyCause::not_known) {
-        return text + "was not queried: too little is known of the motion to come\n";
-    }
-    text += fmt::format("needs {:.4f} mm and {}\n    {}\n", why.need.sum_mm(), available_text(why),
-                        parts_text(why));
-    if (why.has_reach) {
-        text += why.worst_mm > 0
-                    ? fmt::format("    worst case found, to standstill: {:.4f} mm\n", why.worst_mm)
-                    : "    worst case found, to standstill: a contact\n";
-    }
-    if (why.open) {
-        text += fmt::format(
-            "    halving: {} queries; the first part left open needs {:.4f} mm and has {:.4f} mm\n",
-            why.queries, why.open->needed_mm, why.open->available_mm);
-    }
-    if (why.is_list_full) {
-        const char* const list = full_list(why.full);
-        text += fmt::format("    a list of the engine was full{} (cycle: in the machine file)\n",
-                            list == nullptr ? "" : fmt::format(": {}", list));
-    }
-    const std::string remedies = remedies_text(why);
-    return text + (remedies.empty()
-                       ? "    nothing that was tried proves it\n"
-                       : fmt::format("    this sample is proven with: {}\n", remedies));
+    const std::string remedies = remedies_text(why, Detail::brief);
+    return text + (remedies.empty() ? "" : fmt::format("  {}{}\n", kProvenWith, remedies));
 }
 
 }  // namespace axg

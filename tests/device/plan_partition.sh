@@ -39,7 +39,7 @@ replay() {
     local partition=()
     [[ $3 = cpu ]] || partition=(--sms "$sms")
     "$bin/axguard" replay "$fine/$1" "$fine/near.log" --mode "$2" --engine "$3" "${partition[@]}" \
-        --keep-going --json="$out/$4.json" > "$out/$4.txt" 2>&1
+        --keep-going --details --json="$out/$4.json" > "$out/$4.txt" 2>&1
     echo "exit code $?"
     grep -E 'longest|engine|us a cycle|permit|no stop' "$out/$4.txt" | head -12
 }

@@ -21,6 +21,6 @@ TIMEFORMAT='  %R s on the wall, %U s of one core'
 echo simulate
 time "$axguard" simulate "$machine" hour.ngc -o hour.log --work-offset 'G54 Z-300'
 printf '  trace: %d MB\n\nreplay\n' $(($(stat -c %s hour.log) / 1000000))
-time "$axguard" replay "$machine" hour.log --mode stoppable --deadline-us 10000000 \
+time "$axguard" replay "$machine" hour.log --mode stoppable --deadline-us 10000000 --details \
     --mesh-root "$data/machines/probe-basic-xyzac" >out
 grep -E '^(hour|queries|stages|us per cycle|the permit|no stop|STOP)' out

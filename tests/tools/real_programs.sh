@@ -24,7 +24,7 @@ show_page() { # NAME
     local code=0 start=$SECONDS
     mv "$folder/trace.log" "$folder/$1.log"
     (cd "$folder" && "$axguard" replay "$machine" "$1.log" --mesh-root "$meshes" \
-        --report "$pages/$1.html") >"$folder/out" || code=$?
+        --details --report "$pages/$1.html") >"$folder/out" || code=$?
     rm "$folder/$1.log"
     echo "  replay: exit code $code, $((SECONDS - start)) s with the page's clearances"
     sed -n 's/^\(queries per cycle.*\)/  \1/p; s/^\(no stop.*\)/  \1/p; /^STOP/,$ s/^/  /p' \
@@ -54,7 +54,7 @@ carry() { # PROGRAM OPTION...
         return
     fi
     "$axguard" replay "$machine" "$folder/trace.log" --mode contact --mesh-root "$meshes" \
-        --deadline-us 10000000 >"$folder/out" || code=$?
+        --deadline-us 10000000 --details >"$folder/out" || code=$?
     sed -n 's/^\(cycle  .*\)  *sum of.*/  \1/p; s/^\(no stop.*\)/  \1/p; /^STOP/,$ s/^/  /p' \
         "$folder/out"
     echo "  replay: exit code $code"

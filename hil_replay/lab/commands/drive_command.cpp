@@ -106,7 +106,7 @@ int run_ablated(const AblatedDrive& run) {
     for (const std::string& ablation : run.ablations) {
         fmt::print(run.json.words(), "ablation: {}\n", ablation);
     }
-    print_drive(report, run.json.words());
+    print_drive(report, Detail::full, run.json.words());
     const int found = report.contact ? kExitCollision : kExitClean;
     return write_json(run.json, describe_drive(report)) ? found : kExitInternal;
 }

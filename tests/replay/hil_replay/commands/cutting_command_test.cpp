@@ -39,9 +39,9 @@ class Milled : public testing::TestWithParam<Work> {
 };
 
 TEST_P(Milled, StopsForWhatMayNotTouchAlone) {
-    expect("drive mill.yaml work.ngc");
+    expect("drive mill.yaml work.ngc --details");
     ASSERT_EQ(shop_.run("simulate mill.yaml work.ngc -o work.log"), 0) << shop_.err;
-    expect("replay mill.yaml work.log");
+    expect("replay mill.yaml work.log --details");
 }
 
 INSTANTIATE_TEST_SUITE_P(Works, Milled,

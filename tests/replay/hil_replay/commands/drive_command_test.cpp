@@ -60,7 +60,7 @@ TEST_F(DriveCommand, TheDemoIsStoppedAndSaysWhereAndHowFarFromContact) {
     EXPECT_EQ(result["program_block"].get<std::string>().rfind("G1 X0.0000 Y105.7850 ", 0), 0U)
         << result["program_block"];
     EXPECT_LT(result["rest"]["Y_mm"].get<double>(), 105.785);
-    ASSERT_EQ(drive(kDemoProgram, ""), 10);
+    ASSERT_EQ(drive(kDemoProgram, "--details"), 10);
     EXPECT_NE(shop.out.find("paper-trunnion-demo.ngc:" +
                             std::to_string(result["program_line"].get<int>()) + ": G1 X0.0000 "),
               std::string::npos)

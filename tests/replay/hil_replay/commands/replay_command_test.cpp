@@ -130,7 +130,7 @@ TEST_F(ReplayCommand, ARecordedTraceIsMatchedWithItsProgram) {
 }
 
 TEST_F(ReplayCommand, ACollisionIsExit10WithPairTrianglesTimeAndAxes) {
-    EXPECT_EQ(replay("demo.log"), kExitCollision) << shop->err;
+    EXPECT_EQ(replay("demo.log --details"), kExitCollision) << shop->err;
     EXPECT_NE(shop->out.find(": contact, cutter-c"), std::string::npos) << shop->out;
     EXPECT_NE(shop->out.find("pairs of triangles touch: "), std::string::npos) << shop->out;
     EXPECT_NE(shop->out.find("\nSTOP at "), std::string::npos);

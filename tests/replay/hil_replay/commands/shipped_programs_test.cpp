@@ -15,6 +15,7 @@
 #include "tests/support/json_value.hpp"
 #include "tests/support/machine_text.hpp"
 #include "tests/support/replay_fixture.hpp"
+#include "tests/support/screen.hpp"
 
 namespace axg::test {
 namespace {
@@ -86,6 +87,7 @@ class ShippedProgram : public testing::TestWithParam<Shipped> {
                            " trace.log --engine cpu --deadline-us 10000000 --json=end.json"),
                   stops ? kExitCollision : kExitClean)
             << shop.out << shop.err;
+        EXPECT_LE(lines_of(shop.out).size(), kScreenLines) << shop.out;
         const auto all = Json::parse(content_of(shop.file("end.json")));
         ASSERT_EQ(all["stops"].size(), stops ? 1U : 0U) << "one entry a stop";
         EXPECT_EQ(all["stop_count"], stops ? 1 : 0);
@@ -110,6 +112,18 @@ TEST_P(ShippedProgram, EndsWhereTheTableSaysWithALookAheadPath) {
 
 TEST_P(ShippedProgram, EndsWhereTheTableSaysOfABoardThatStopsAlongItsPath) {
     expect_end(Wire::path_keeping, GetParam().path_keeping);
+}
+
+TEST_P(ShippedProgram, FitsOnOneScreenWhenDriven) {
+    const auto program = std::string("hil_replay/programs/") + GetParam().program + ".ngc";
+    const int code = shop.run(
+        "drive " + source_file(std::string("config/machines/") + GetParam().machine + ".yaml") +
+        " " + source_file(program));
+    ASSERT_TRUE(code == kExitClean || code == kExitCollision) << shop.err;
+    EXPECT_LE(lines_of(shop.out).size(), kScreenLines) << shop.out;
+    EXPECT_NE(shop.out.find(code == kExitClean ? "\nthe program ran to its end\n" : "\nSTOP: "),
+              std::string::npos)
+        << shop.out;
 }
 
 INSTANTIATE_TEST_SUITE_P(Each, ShippedProgram, testing::ValuesIn(kShipped),

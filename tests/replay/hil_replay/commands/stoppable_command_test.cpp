@@ -51,7 +51,8 @@ class StoppableCommand : public testing::Test {
 std::unique_ptr<test::Workshop> StoppableCommand::shop;
 
 TEST_F(StoppableCommand, TheCleanProgramKeepsItsPermit) {
-    EXPECT_EQ(replay("clean.log --json=clean.json"), kExitClean) << shop->out << shop->err;
+    EXPECT_EQ(replay("clean.log --details --json=clean.json"), kExitClean)
+        << shop->out << shop->err;
     const auto all = document("clean.json");
     EXPECT_EQ(all["mode"], "stoppable");
     EXPECT_EQ(all["stop_count"], 0);
@@ -163,8 +164,9 @@ TEST_F(StoppableCommand, ClearanceLevelsAreReportedAndChangeNoPermit) {
     for (const std::string mode : {"stoppable", "contact"}) {
         const std::string arguments = "demo.log --mode " + mode;
         ASSERT_EQ(replay(arguments + " --json=plain.json"), kExitCollision);
-        ASSERT_EQ(replay(arguments + " --json=l.json --csv l.csv --frames-out l.log", machine),
-                  kExitCollision)
+        ASSERT_EQ(
+            replay(arguments + " --details --json=l.json --csv l.csv --frames-out l.log", machine),
+            kExitCollision)
             << shop->err;
         EXPECT_NE(shop->out.find("worst of all"), std::string::npos) << shop->out;
         const auto plain = document("plain.json"), levels = document("l.json");

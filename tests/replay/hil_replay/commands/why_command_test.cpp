@@ -27,8 +27,9 @@ class WhyCommand : public testing::Test {
     static void TearDownTestSuite() { shop.reset(); }
 
     static Json replayed(const std::string& arguments, int wanted_code) {
-        EXPECT_EQ(shop->run("replay " + arguments + " --deadline-us 10000000 --json=out.json"),
-                  wanted_code)
+        EXPECT_EQ(
+            shop->run("replay " + arguments + " --details --deadline-us 10000000 --json=out.json"),
+            wanted_code)
             << shop->out << shop->err;
         return Json::parse(content_of(shop->file("out.json")));
     }

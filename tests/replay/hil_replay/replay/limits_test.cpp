@@ -36,7 +36,8 @@ class Limits : public testing::Test {
         return shop->write(name, changed) + " --mesh-root " + source_file("config/machines");
     }
     static Json replayed(const std::string& machine, int wanted_code) {
-        EXPECT_EQ(shop->run("replay " + machine + " trace.log --json=out.json"), wanted_code)
+        EXPECT_EQ(shop->run("replay " + machine + " trace.log --details --json=out.json"),
+                  wanted_code)
             << shop->out << shop->err;
         return Json::parse(content_of(shop->file("out.json")));
     }
