@@ -19,7 +19,7 @@ constexpr std::array<std::string_view, 4> kLabCommands = {"query", "accuracy", "
 
 }  // namespace
 
-int run_axguard(std::vector<std::string> words) {
+int run_axguard(std::vector<std::string> words, const ReplayObserver& observer) {
     if (!words.empty() &&
         std::find(kLabCommands.begin(), kLabCommands.end(), words.front()) != kLabCommands.end()) {
         return start_lab(words);
@@ -33,7 +33,7 @@ int run_axguard(std::vector<std::string> words) {
     add_check(line);
     add_compile(line);
     add_simulate(line);
-    add_replay(line);
+    add_replay(line, observer);
     add_drive(line);
     add_inspect(line);
     add_watch(line);

@@ -6,9 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "hil_replay/commands/commands.hpp"
+
 namespace axg {
 
-/// @param words  as typed after the program's name
-[[nodiscard]] int run_axguard(std::vector<std::string> words);
+/// @param words     as typed after the program's name
+/// @param observer  called with the result of a replay, before its files are written
+[[nodiscard]] int run_axguard(std::vector<std::string> words, const ReplayObserver& observer = {});
 
 }  // namespace axg

@@ -2,15 +2,21 @@
 // The subcommands of axguard: each adds itself to the command line.
 #pragma once
 
+#include <functional>
+
 namespace axg {
 
 class CommandLine;
+struct ReplayReport;
+
+/// What a command that starts a replay wants of its result; may be empty.
+using ReplayObserver = std::function<void(const ReplayReport&)>;
 
 void add_simulate(CommandLine& line);
 void add_check(CommandLine& line);
 void add_compile(CommandLine& line);
 void add_init(CommandLine& line);
-void add_replay(CommandLine& line);
+void add_replay(CommandLine& line, const ReplayObserver& observer);
 void add_drive(CommandLine& line);
 void add_inspect(CommandLine& line);
 void add_demo(CommandLine& line);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// axguard demo: the main job on an example machine, each step as the command a person would type.
+// axguard demo: the main job on an example machine. It runs the commands that a person would type,
+// shows the result on one screen and keeps all that they print in a log.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -9,72 +10,200 @@
 #include <system_error>
 #include <vector>
 
+#include "config/text/quote_text.hpp"
 #include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/whole_file.hpp"
 #include "hil_replay/commands/axguard.hpp"
+#include "hil_replay/commands/captured_stdout.hpp"
 #include "hil_replay/commands/commands.hpp"
+#include "hil_replay/commands/details_option.hpp"
+#include "hil_replay/commands/shell_text.hpp"
+#include "hil_replay/replay/replay_brief.hpp"
 
 namespace axg {
 namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kColumns = 100;
+constexpr std::size_t kBlockBytesMax = 60;  // of a line of the program
+
 struct DemoOptions {
     std::string data = AXG_DATA_DIR, out = "axguard-demo";
+    bool has_details = false;
 };
 
-/// Prints the command, runs it. True when it ended with the exit code this demo is about.
-bool type(const std::vector<std::string>& words, int wanted) {
-    fmt::print("\n$ axguard {}\n", fmt::join(words, " "));
-    std::fflush(stdout);
-    const int exit_code = run_axguard(words);
-    std::fflush(stdout);
-    if (exit_code != wanted && exit_code != kExitDeadline) {
-        fmt::print(stderr, "axguard demo: the command failed (exit code {}, expected {}).\n",
-                   exit_code, wanted);
+/// What the screen shows of a replay.
+struct DemoReplay {
+    std::string proven, cycle, stop, why;  // lines; stop and why: of the first stop
+    double stop_s = 0;
+    std::string reason;
+};
+
+DemoReplay demo_replay(const ReplayReport& report) {
+    DemoReplay out;
+    out.proven = proven_text(report);
+    out.cycle = fmt::format("{}; deadline {} ({} late)", cycle_text(report), report.deadline_us,
+                            report.run.overruns());
+    if (report.run.stops().empty()) {
+        return out;
+    }
+    const StopEvent& stop = report.run.stops().front();
+    out.stop_s = static_cast<double>(stop.time_us) * 1e-6;
+    out.reason = reason_text(stop);
+    out.stop = fmt::format("stop at {:.3f} s", out.stop_s);
+    if (const ProgramStep* step = step_at(report.lines, stop.snapshot.arrived_us)) {
+        out.stop += fmt::format(", line {}: {}", step->line, escaped(step->block, kBlockBytesMax));
+    }
+    if (const auto why = report.whys.find(&stop); why != report.whys.end()) {
+        for (const std::string& sentence : why_sentences(report.loaded.machine, why->second)) {
+            out.why += fmt::format("   {}\n", sentence);
+        }
+    }
+    return out;
+}
+
+/// Commands, one after the other, with what they print in a log.
+class DemoRun {
+  public:
+    explicit DemoRun(bool has_details) : has_details_(has_details) {}
+
+    /// False: it did not end with the exit code this demo is about; the reason is printed.
+    bool type(std::vector<std::string> words, int wanted, DemoReplay* seen = nullptr) {
+        if (seen != nullptr) {
+            words.emplace_back("--details");
+        }
+        const std::string command = fmt::format("$ axguard {}\n", fmt::join(words, " "));
+        int exit_code = kExitInternal;
+        const ReplayObserver observer = [seen](const ReplayReport& report) {
+            *seen = demo_replay(report);
+        };
+        const std::string said = captured_stdout(
+            [&] { exit_code = run_axguard(words, seen == nullptr ? nullptr : observer); });
+        log_ += command + said + "\n";
+        const bool is_as_told = exit_code == wanted;
+        if (has_details_ || !is_as_told) {
+            fmt::print(is_as_told ? stdout : stderr, "\n{}{}", command, said);
+        }
+        if (!is_as_told) {
+            fmt::print(stderr, "axguard demo: the command failed (exit code {}, expected {}).\n",
+                       exit_code, wanted);
+        }
+        std::fflush(stdout);
+        return is_as_told;
+    }
+    [[nodiscard]] const std::string& log() const noexcept { return log_; }
+
+  private:
+    bool has_details_;
+    std::string log_;
+};
+
+struct DemoFiles {
+    std::string machine, meshes, clean_program, program;  // as commands are given them
+    std::string clean_trace, trace, frames, page, log;    // written
+};
+
+DemoFiles demo_files(const DemoOptions& options) {
+    const fs::path data = options.data, out = options.out;
+    const auto given = [&data](const char* name) { return shorter_path((data / name).string()); };
+    return {.machine = given("config/machines/paper-trunnion.yaml"),
+            .meshes = given("config/machines/meshes/paper-trunnion"),
+            .clean_program = given("hil_replay/programs/paper-trunnion-clean.ngc"),
+            .program = given("hil_replay/programs/paper-trunnion-demo.ngc"),
+            .clean_trace = out / "clean.log",
+            .trace = out / "collision.log",
+            .frames = out / "guard.log",
+            .page = out / "collision.html",
+            .log = out / "details.txt"};
+}
+
+/// Both programs, each shown when it is done. False: a command failed.
+bool run_programs(const DemoFiles& files, DemoRun& run) {
+    DemoReplay clean, stopped, contact;
+    if (!run.type({"simulate", files.machine, files.clean_program, "-o", files.clean_trace},
+                  kExitClean) ||
+        !run.type({"replay", files.machine, files.clean_trace}, kExitClean, &clean)) {
         return false;
     }
+    fmt::print("\n1  {} runs to its end\n   {}\n   {}\n",
+               fs::path(files.clean_program).filename().string(), clean.proven, clean.cycle);
+    std::fflush(stdout);
+    if (!run.type({"simulate", files.machine, files.program, "-o", files.trace}, kExitClean) ||
+        !run.type({"replay", files.machine, files.trace, "--frames-out", files.frames, "--report",
+                   files.page},
+                  kExitCollision, &stopped) ||
+        !run.type({"replay", files.machine, files.trace, "--mode", "contact"}, kExitCollision,
+                  &contact)) {
+        return false;
+    }
+    fmt::print(
+        "\n2  {} drives the cutter into the plate c: the guard stops it before\n"
+        "   {}\n   {}\n   {}\n{}",
+        fs::path(files.program).filename().string(), stopped.proven, stopped.cycle, stopped.stop,
+        stopped.why);
+    fmt::print(
+        "   a test of the sampled positions alone (--mode contact) stops {:.3f} s later: {}\n",
+        contact.stop_s - stopped.stop_s, contact.reason);
     return true;
 }
 
+/// Where everything is, and commands to go on with.
+void print_next(const DemoFiles& files) {
+    fmt::print("\npage  {}: the machine in motion up to the stop; open it in a browser\n",
+               files.page);
+    fmt::print("logs  {}: all that the commands print; {}: every permit, then the stop\n",
+               files.log, fs::path(files.frames).filename().string());
+    const std::string program = own_command();
+    struct Step {
+        const char* what;
+        std::vector<std::string> words;
+    };
+    const Step steps[] = {
+        {"what the guard knows", {program, "check", files.machine}},
+        {"closed loop: a board brakes", {program, "drive", files.machine, files.program}},
+        {"your machine, from STL files",
+         {program, "init", files.meshes, "-o", "my-machine.yaml", "--unit", "mm"}}};
+    const char* head = "next";
+    for (const Step& step : steps) {
+        const std::string command = shell_command(step.words, 6, kColumns);
+        const std::size_t last = command.rfind('\n');
+        const std::size_t used =
+            last == std::string::npos ? 6 + command.size() : command.size() - last - 1;
+        const std::string note = std::string("  # ") + step.what;
+        fmt::print("{:<6}{}{}\n", head, command, used + note.size() <= kColumns ? note : "");
+        head = "";
+    }
+}
+
 int demo(const DemoOptions& options) {
-    const fs::path data = options.data, out = options.out;
-    const std::string machine = data / "config/machines/paper-trunnion.yaml";
-    const std::string programs = data / "hil_replay/programs/paper-trunnion-";
+    const DemoFiles files = demo_files(options);
     std::error_code code;
-    if (!fs::exists(machine, code)) {
+    if (!fs::exists(files.machine, code)) {
         fmt::print(stderr,
                    "{}: file not found. Pass the folder that contains config/ and hil_replay/ with "
                    "--data FOLDER.\n",
-                   machine);
+                   files.machine);
         return kExitInput;
     }
-    fs::create_directories(out, code);
+    fs::create_directories(options.out, code);
     if (code) {
-        fmt::print(stderr, "{}: {}. Pass another folder with --out FOLDER.\n", out.string(),
+        fmt::print(stderr, "{}: {}. Pass another folder with --out FOLDER.\n", options.out,
                    code.message());
         return kExitInput;
     }
-    const std::string trace = out / "collision.log", clean = out / "clean.log",
-                      page = out / "collision.html";
-    fmt::print("A five-axis mill with a tilting cradle, two programs, no GPU, no CAN.\n");
-    const bool as_told =
-        type({"simulate", machine, programs + "clean.ngc", "-o", clean}, kExitClean) &&
-        type({"replay", machine, clean}, kExitClean) &&
-        type({"simulate", machine, programs + "demo.ngc", "-o", trace}, kExitClean) &&
-        type({"replay", machine, trace, "--frames-out", out / "guard.log", "--report", page},
-             kExitCollision) &&
-        type({"replay", machine, trace, "--mode", "contact"}, kExitCollision);
-    if (!as_told) {
+    fmt::print(
+        "axguard demo: a simulated five-axis mill with a tilting cradle; no GPU, no CAN\n"
+        "proven: from that sample the machine can stop before two of its bodies touch\n");
+    std::fflush(stdout);
+    DemoRun run(options.has_details);
+    const bool is_done = run_programs(files, run);
+    const bool is_logged = write_whole_file(files.log, run.log(), stderr);
+    if (!is_done || !is_logged) {
         return kExitInternal;
     }
-    fmt::print(
-        "\nThe first program ran to its end: every sample had a stop certificate. The second "
-        "drives the cutter\ninto the plate: the guard stopped it while a stop still ends clear of "
-        "the plate. Mode contact, as in\nthe seed paper, checks only the sampled poses and detects "
-        "the collision at contact.\n  {}: the machine in motion, up to the stop; open it in a "
-        "browser\n  {}: every permit, then the stop\n",
-        page, (out / "guard.log").string());
+    print_next(files);
     return kExitClean;
 }
 
@@ -87,8 +216,9 @@ void add_demo(CommandLine& line) {
     command.set_group("Set up a machine");
     command.set_example("axguard demo");
     command.add_option("--data", options->data, "folder that contains config/ and hil_replay/");
-    command.add_output_folder("--out", options->out, "folder for traces and report")
+    command.add_output_folder("--out", options->out, "folder for traces, report and log")
         .shows_default();
+    add_details_option(command, options->has_details);
     command.set_action([options] { return demo(*options); });
 }
 

@@ -247,7 +247,7 @@ ProgramLines lines_of(const ReplayArguments& arguments, Outputs& outputs) {
     return lines;
 }
 
-int replay(const ReplayArguments& arguments) {
+int replay(const ReplayArguments& arguments, const ReplayObserver& observer) {
     LoadedMachine loaded;
     if (const int code = load(arguments.machine, loaded); code != kExitClean) {
         return code;
@@ -308,6 +308,9 @@ int replay(const ReplayArguments& arguments) {
                         std::move(lines)};
     explain_stops(report);
     print_replay(report, detail_of(arguments.has_details), arguments.json.words());
+    if (observer) {
+        observer(report);
+    }
     const bool written = write_outputs(arguments, report, outputs);
     int found = gpu_failed           ? kExitGpu
                 : !end.fault.empty() ? kExitCan
@@ -320,7 +323,7 @@ int replay(const ReplayArguments& arguments) {
 
 }  // namespace
 
-void add_replay(CommandLine& line) {
+void add_replay(CommandLine& line, const ReplayObserver& observer) {
     auto arguments = std::make_shared<ReplayArguments>();
     const Command command =
         line.add_command("replay", "Replay a CAN trace through the guard and report every stop");
@@ -377,7 +380,7 @@ void add_replay(CommandLine& line) {
     command.add_flag("--lenient", arguments->lenient, "skip and count invalid lines");
     add_details_option(command, arguments->has_details);
     add_json_option(command, arguments->json);
-    command.set_action([arguments, files = command.files(), program, settings] {
+    command.set_action([arguments, files = command.files(), program, settings, observer] {
         const bool has_setting = std::any_of(settings.begin(), settings.end(),
                                              [](const Option& one) { return one.is_given(); });
         if (program.is_given() && arguments->gcode.program.empty()) {
@@ -394,7 +397,7 @@ void add_replay(CommandLine& line) {
             return static_cast<int>(kExitUsage);
         }
         const std::string lines = program_lines_name(arguments->trace);  // read without an option
-        return are_apart(*files, {lines}, stderr) ? replay(*arguments)
+        return are_apart(*files, {lines}, stderr) ? replay(*arguments, observer)
                                                   : static_cast<int>(kExitUsage);
     });
 }
