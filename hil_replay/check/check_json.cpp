@@ -18,10 +18,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const std::string& name_of(const Machine& machine, std::uint32_t body) {
-    return machine.bodies[body].name;
-}
-
 const char* unit_of(const Axis& axis) {
     return axis.kind == AxisKind::rotary ? "deg" : "mm";
 }
@@ -94,7 +90,7 @@ Json describe_bodies(const Machine& machine, const CheckFacts& facts) {
         const std::uint32_t axis = body.joint.axis;
         out.push_back(
             {{"name", body.name},
-             {"parent", body.parent == kNoIndex ? Json{} : Json(name_of(machine, body.parent))},
+             {"parent", body.parent == kNoIndex ? Json{} : Json(machine.bodies[body.parent].name)},
              {"axis", axis == kNoIndex ? Json{} : Json(machine.axes[axis].name)},
              {"tool", body.is_tool},
              {"stock", body.is_stock}});
@@ -133,8 +129,8 @@ Json describe_tools(const Machine& machine, const CheckFacts& facts) {
 Json describe_pairs(const Machine& machine) {
     Json out = Json::array();
     for (const Pair& pair : machine.pairs) {
-        out.push_back({{"a", name_of(machine, pair.a)},
-                       {"b", name_of(machine, pair.b)},
+        out.push_back({{"a", machine.bodies[pair.a].name},
+                       {"b", machine.bodies[pair.b].name},
                        {"margin_mm", pair.margin_mm},
                        {"slow_mm", pair.slow_mm},
                        {"warn_mm", pair.warn_mm}});
@@ -145,8 +141,8 @@ Json describe_pairs(const Machine& machine) {
 Json describe_exclusions(const Machine& machine) {
     Json out = Json::array();
     for (const Exclusion& one : machine.exclusions) {
-        out.push_back({{"a", name_of(machine, one.a)},
-                       {"b", name_of(machine, one.b)},
+        out.push_back({{"a", machine.bodies[one.a].name},
+                       {"b", machine.bodies[one.b].name},
                        {"reason", one.reason}});
     }
     return out;

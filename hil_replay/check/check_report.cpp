@@ -17,10 +17,6 @@
 namespace axg {
 namespace {
 
-const std::string& name_of(const Machine& machine, std::uint32_t body) {
-    return machine.bodies[body].name;
-}
-
 /// Nobody can say whether another body is inside an open shell; where others are closed, what is
 /// inside those is still seen.
 std::string closure_of(const MeshReport& mesh) {
@@ -175,7 +171,7 @@ void report_bodies(CheckReport& report) {
         const Body& body = machine.bodies[i];
         const bool moves = body.joint.axis != kNoIndex;
         const std::string parent =
-            body.parent == kNoIndex ? "the machine" : name_of(machine, body.parent);
+            body.parent == kNoIndex ? "the machine" : machine.bodies[body.parent].name;
         MeshReport& facts = report.facts.bodies.emplace_back();
         std::string surface = body.is_tool ? "the tool in the spindle" : "no surface";
         if (!body.is_tool && body.has_mesh) {
@@ -220,14 +216,15 @@ void report_pairs(CheckReport& report) {
     const Machine& machine = report.loaded.machine;
     fmt::print(report.words, "\npairs checked: {}\n", machine.pairs.size());
     for (const Pair& pair : machine.pairs) {
-        fmt::print(report.words, "  {:<16} {:<16} margin {:.6g} mm{}\n", name_of(machine, pair.a),
-                   name_of(machine, pair.b), pair.margin_mm, format_clearance_levels(pair));
+        fmt::print(report.words, "  {:<16} {:<16} margin {:.6g} mm{}\n",
+                   machine.bodies[pair.a].name, machine.bodies[pair.b].name, pair.margin_mm,
+                   format_clearance_levels(pair));
     }
     fmt::print(report.words, "\npairs not checked: {}\n", machine.exclusions.size());
     for (const Exclusion& one : machine.exclusions) {
-        const std::string both = name_of(machine, one.a) + " and " + name_of(machine, one.b);
-        fmt::print(report.words, "  {:<16} {:<16} {}\n", name_of(machine, one.a),
-                   name_of(machine, one.b), escaped(one.reason, 512));
+        const std::string both = machine.bodies[one.a].name + " and " + machine.bodies[one.b].name;
+        fmt::print(report.words, "  {:<16} {:<16} {}\n", machine.bodies[one.a].name,
+                   machine.bodies[one.b].name, escaped(one.reason, 512));
         if (one.reason.starts_with(kReviewMark)) {
             report.warnings.push_back("exclusion of " + both +
                                       ": the reason is the placeholder of init. Write your own, or "

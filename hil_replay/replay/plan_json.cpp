@@ -5,8 +5,13 @@
 
 namespace axg {
 
-nlohmann::ordered_json plan_json(const CyclePlan& plan) {
-    using Json = nlohmann::ordered_json;
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+}  // namespace
+
+Json plan_json(const CyclePlan& plan) {
     auto stages = Json::array();
     for (std::uint32_t stage = 0; stage < plan.stages; ++stage) {
         const WorkLists& lists = plan.lists[stage];
