@@ -9,6 +9,7 @@
 
 #include "firmware_if/protocol/wire.hpp"
 #include "hil_replay/replay/black_box_file.hpp"
+#include "tests/fuzz/targets.hpp"
 
 namespace {
 
@@ -58,7 +59,7 @@ void expect_bounds(const axg::BlackBoxContent& content) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+int axg::fuzz::black_box(const std::uint8_t* data, std::size_t size) {
     std::vector<std::uint8_t> dump(data, data + size);
     if (size != 0 && data[size - 1] % 2 == 0) {
         seal_all(dump);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstdlib>
 
+#include "tests/fuzz/targets.hpp"
 #include "tests/support/board_fixture.hpp"
 
 namespace {
@@ -76,7 +77,7 @@ void step(axg::test::BoardFixture& fixture, std::uint32_t& number, std::uint64_t
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size_bytes) {
+int axg::fuzz::board(const std::uint8_t* data, std::size_t size_bytes) {
     constexpr std::size_t kStepBytes = 7;
     axg::test::BoardFixture fixture(size_bytes != 0 && data[0] % 2U != 0 ? AXG_BOARD_CAP_ENFORCED
                                                                          : AXG_BOARD_CAP_IGNORED);

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "hil_replay/trace/candump_log.hpp"
+#include "tests/fuzz/targets.hpp"
 
 namespace {
 
@@ -41,7 +42,7 @@ void read_all(std::string_view text, bool lenient) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+int axg::fuzz::candump(const std::uint8_t* data, std::size_t size) {
     const std::string_view text(reinterpret_cast<const char*>(data), size);
     read_all(text, false);
     read_all(text, true);

@@ -9,6 +9,7 @@
 
 #include "config/machine/effective_text.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
+#include "tests/fuzz/targets.hpp"
 #include "tests/support/small_compiled.hpp"
 
 namespace {
@@ -26,7 +27,7 @@ std::string changed(const std::uint8_t* data, std::size_t size) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+int axg::fuzz::compiled(const std::uint8_t* data, std::size_t size) {
     if (size == 0) {
         return 0;
     }

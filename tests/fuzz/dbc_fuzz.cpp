@@ -9,6 +9,7 @@
 #include "config/can/dbc_signal.hpp"
 #include "firmware_if/protocol/axis_frames.hpp"
 #include "firmware_if/protocol/wire.hpp"
+#include "tests/fuzz/targets.hpp"
 
 namespace {
 
@@ -35,7 +36,7 @@ void check_signal(const axg::DbcMessage& message, const axg::DbcSignal& signal) 
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+int axg::fuzz::dbc(const std::uint8_t* data, std::size_t size) {
     axg::Dbc dbc;
     const auto faults =
         axg::parse_dbc({reinterpret_cast<const char*>(data), size}, "fuzz.dbc", dbc);

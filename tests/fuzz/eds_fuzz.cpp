@@ -6,8 +6,9 @@
 #include <string_view>
 
 #include "config/can/eds.hpp"
+#include "tests/fuzz/targets.hpp"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+int axg::fuzz::eds(const std::uint8_t* data, std::size_t size) {
     axg::Eds eds;
     const auto faults = axg::parse_eds({reinterpret_cast<const char*>(data), size}, "fuzz.eds",
                                        size == 0 ? 1U : 1U + data[0] % 127U, eds);

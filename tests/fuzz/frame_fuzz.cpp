@@ -10,6 +10,7 @@
 #include <cstdlib>
 
 #include "firmware_if/protocol/e2e.hpp"
+#include "tests/fuzz/targets.hpp"
 #include "tests/support/can_board.hpp"
 
 namespace {
@@ -101,7 +102,7 @@ bool is_path(const axg::PathPoints& look_ahead, std::uint64_t next_sample) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+int axg::fuzz::frame(const std::uint8_t* data, std::size_t size) {
     if (size == 0) {
         return 0;
     }

@@ -9,9 +9,10 @@
 
 #include "hil_replay/gcode/gcode_reader.hpp"
 #include "hil_replay/motion/motion_sampler.hpp"
+#include "tests/fuzz/targets.hpp"
 #include "tests/support/motion_machine.hpp"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+int axg::fuzz::gcode(const std::uint8_t* data, std::size_t size) {
     static const axg::Machine machine = axg::motion_test_machine();
     static const axg::MotionLimits limits = axg::make_motion_limits(machine);
     constexpr std::uint64_t kStepsMax = 20000;

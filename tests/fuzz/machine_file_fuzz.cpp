@@ -6,8 +6,9 @@
 
 #include "config/machine/effective_text.hpp"
 #include "config/machine/parse_machine.hpp"
+#include "tests/fuzz/targets.hpp"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+int axg::fuzz::machine_file(const std::uint8_t* data, std::size_t size) {
     const std::string text(reinterpret_cast<const char*>(data), size);
     axg::Machine machine;
     machine.name = "untouched";

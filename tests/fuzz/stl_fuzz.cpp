@@ -8,8 +8,9 @@
 
 #include "core/mesh/mesh_check.hpp"
 #include "core/mesh/stl.hpp"
+#include "tests/fuzz/targets.hpp"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+int axg::fuzz::stl(const std::uint8_t* data, std::size_t size) {
     const auto bytes = std::as_bytes(std::span{data, size});
     const axg::StlResult result = axg::read_stl(bytes, 1.0);
     if (result.faults.empty() == result.triangles.empty()) {

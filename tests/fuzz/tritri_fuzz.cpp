@@ -8,8 +8,9 @@
 
 #include "hil_replay/lab/cases/tritri_file.hpp"
 #include "hil_replay/lab/methods/method.hpp"
+#include "tests/fuzz/targets.hpp"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+int axg::fuzz::tritri(const std::uint8_t* data, std::size_t size) {
     using namespace axg::lab;
     TritriFile file;
     const std::string fault = parse_tritri({reinterpret_cast<const char*>(data), size}, file);

@@ -5,8 +5,9 @@
 #include <string_view>
 
 #include "hil_replay/trace/vector_asc.hpp"
+#include "tests/fuzz/targets.hpp"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+int axg::fuzz::vector_asc(const std::uint8_t* data, std::size_t size) {
     const std::string_view text(reinterpret_cast<const char*>(data), size);
     for (const bool lenient : {false, true}) {
         axg::TraceOptions options;
