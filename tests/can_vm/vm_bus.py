@@ -142,12 +142,13 @@ def machine_file(format_="classical", has_hashes=False, can_keys="", permit_samp
     text = text.replace("\nguard:\n", "\nguard:\n" + guard_keys)
     if not has_hashes:
         text = text.replace("hashes: required", "hashes: none")
-    # `can` is the last section of the file.
-    path.write_text(text + f"  format: {format_}\n  sample_us: {PERIOD_US}\n"
-                    f"  permit_samples: {permit_samples}\n"
-                    f"  stale_after_us: {permit_samples * PERIOD_US}\n{can_keys}"
-                    f"deadline_us: {PERIOD_US // 2}\n")
-    return path
+    # `can` is the last section of the file. In one step: a board may be reading the last one.
+    new = path.with_suffix(".new")
+    new.write_text(text + f"  format: {format_}\n  sample_us: {PERIOD_US}\n"
+                   f"  permit_samples: {permit_samples}\n"
+                   f"  stale_after_us: {permit_samples * PERIOD_US}\n{can_keys}"
+                   f"deadline_us: {PERIOD_US // 2}\n")
+    return new.replace(path)
 
 
 class Guard:
