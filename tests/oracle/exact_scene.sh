@@ -6,7 +6,7 @@
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 build=$(cd "${1:?usage: exact_scene.sh BUILD_FOLDER [POSES]}" && pwd)
-poses=${2:-200}
+poses=${2:-$((200 / ${AXG_COUNT_DIVISOR:-1}))}
 seed=${AXG_SEED:-3}
 machine=${AXG_MACHINE:-$root/config/machines/paper-trunnion.yaml}
 for needed in "$machine" "$build/axguard-lab" "$build/tests/axg_make_scene" \

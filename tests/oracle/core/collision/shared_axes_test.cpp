@@ -201,7 +201,7 @@ float& coordinate(sat::EdgePair<float>& p, unsigned i) {
 TEST(SharedAxes, RoundingsStayWithinTheirBounds) {
     Random random(printed_seed(20261131));
     Worst worst;
-    for (unsigned round = 0; round < std::max(20U, count_a_kind() / 10); ++round) {
+    for (unsigned round = 0; round < std::max(100U, count_a_kind() / 10); ++round) {
         sat::EdgePair<float> best;
         for (unsigned i = 0; i < 15; ++i) {
             const double size = (random() & 1U) != 0 ? 1 : between(random, -1, 1);

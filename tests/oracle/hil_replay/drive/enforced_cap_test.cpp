@@ -70,8 +70,9 @@ CapRun drive_with(const Example& example, const CapCase& one) {
     options.lost_s = keeps ? &lost_s : nullptr;
     options.faults.lost = one.lost;
     options.faults.permit_lost = one.permit_lost;
-    options.time_us_max =
-        static_cast<std::int64_t>(count_from_environment(kUsualMachineSeconds)) * 1'000'000;
+    options.time_us_max = static_cast<std::int64_t>(
+                              count_from_environment(kUsualMachineSeconds, kUsualMachineSeconds)) *
+                          1'000'000;
     DriveObservers observers;
     observers.watch = [&](std::int64_t time_us, std::span<const AxisMotion> axes) {
         const std::uint16_t tool = chain.snapshot().tool;

@@ -121,7 +121,7 @@ void follow(Dice& dice, const Program& program, const MotionLimits& limits, Tall
 
 TEST(PlannedClock, NoAxisIsFasterThanWasSaid) {
     const std::uint64_t seed = printed_seed(20261127);
-    const std::uint64_t count = count_from_environment(12);
+    const std::uint64_t count = count_from_environment(12, 12);
     Tally tally;
     for (std::uint64_t round = 0; round < count && !testing::Test::HasFailure(); ++round) {
         Dice dice(seed + round);

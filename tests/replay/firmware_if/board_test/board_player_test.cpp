@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The test of a board, played to simulated ones on a simulated bus with a clock of its own. A board
 // that keeps every rule passes all; of boards that break one rule each, the rule is named.
+// ctest-labels: rare firmware_if.board
 #include "firmware_if/board_test/board_player.hpp"
 
 #include <gtest/gtest.h>

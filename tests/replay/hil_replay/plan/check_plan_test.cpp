@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // axguard check --plan on a machine whose ball has more triangles than it needs: the models it
 // measures, what it chooses, and that the lines it prints load and keep what they promise.
-// ctest-labels: long
+// ctest-labels: long rare core.worst_case firmware_if.setup
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -2,6 +2,7 @@
 // axguard-lab chart: the failures it shows are those that are known, each printed case fails again
 // when it is read back, two runs of one seed count alike, and pictures appear where gnuplot is
 // there.
+// ctest-labels: rare hil_replay.lab.bench hil_replay.lab.methods
 #include <gtest/gtest.h>
 
 #include <algorithm>

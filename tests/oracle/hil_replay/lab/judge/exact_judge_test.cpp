@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ctest-labels: data
+// ctest-labels: data rare
 // The laboratory's exact judge against the tests' own exact distance, which shares no code with it,
 // on every category of generated pairs, and against cases made elsewhere. AXG_COUNT: pairs a
 // category.
