@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The rules notice what they are for, and let pass what they should."""
 import pathlib
+import subprocess
 import sys
 import tempfile
 import textwrap
@@ -22,6 +23,10 @@ import readme_figures
 import shared_copies
 import words
 from sources import finish, without_comments_and_strings
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "tools"))
+import changed  # noqa: E402
+import step_table  # noqa: E402
 
 FAULTS = []
 
@@ -415,7 +420,58 @@ def figure_labels_notice():
         expect(f"figure_labels: {places}", len(found) == faults)
 
 
+def rare(name, *labels):
+    return {"name": name, "properties": [{"name": "LABELS", "value": ["rare", *labels]}]}
+
+
+def changes_reach():
+    """In a repository of four files: a header, who includes it, another room, and a script."""
+    files = {"core/base/a.hpp": "", "core/guard/b.cpp": '#include "core/base/a.hpp"\n',
+             "core/mesh/c.cpp": "", "tests/can_vm/d.py": ""}
+    tests = [rare("base", "core.base"), rare("guard", "core.guard"), rare("mesh", "core.mesh"),
+             rare("script", "files:tests/can_vm/*.py"), {"name": "usual", "properties": []}]
+    with tempfile.TemporaryDirectory() as name:
+        root = pathlib.Path(name)
+        for file, text in files.items():
+            (root / file).parent.mkdir(parents=True, exist_ok=True)
+            (root / file).write_text(text)
+
+        def git(*words):
+            return subprocess.run(["git", "-C", root, "-c", "user.name=a", "-c", "user.email=a",
+                                   *words], check=True, capture_output=True, text=True).stdout
+        git("init", "-q")
+        git("add", ".")
+        git("commit", "-q", "-m", "a")
+        head = git("rev-parse", "HEAD").strip()
+        record = root / changed.RECORD
+        record.parent.mkdir(parents=True)
+        record.write_text(f"run,commit\nday,{'0' * 40},\nnight,{head},2026-11-29,EPYC,tidy,5\n")
+        git("add", ".")
+        for file, left in [
+                (None, ["base", "guard", "mesh", "script"]),
+                ("core/base/a.hpp", ["mesh", "script"]),
+                ("core/mesh/c.cpp", ["base", "guard", "script"]),
+                ("tests/can_vm/d.py", ["base", "guard", "mesh"])]:
+            if file:
+                (root / file).write_text(files[file] + "// changed\n")
+            found = list(changed.left_out(tests, changed.Change(root)))
+            expect(f"changed: {file}: left out {found}", found == left)
+            git("checkout", "-q", head, "--", *files)
+        record.write_text("night," + "1" * 40 + ",")
+        expect("changed: git does not know the commit, so everything has changed",
+               not list(changed.left_out(tests, changed.Change(root))))
+
+
+def step_tables_warn():
+    lines = list(step_table.table([("a", 60), ("b", 2400)], {"a": 50}))
+    expect("step_table: the sum and a warning", "2460" in lines[3] and "warning" in lines[4])
+    lines = list(step_table.table([("a", 60)], {}))
+    expect("step_table: no record, no warning", len(lines) == 3 and "-" in lines[1])
+
+
 def main():
+    changes_reach()
+    step_tables_warn()
     figure_labels_notice()
     expect("blanking keeps lines",
            without_comments_and_strings('a /* x\ny */ "s" // c\nb').count("\n") == 2)

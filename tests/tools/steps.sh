@@ -2,11 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 # Shared by demo.sh and test.sh: runs a step silently, shows its log only when it fails.
 
-steps_begin() { # ROOT
+steps_begin() { # ROOT [TABLE]: where each step's seconds go (tests/tools/step_table.py)
     steps_root=$1
     steps_failed=0
     steps_logs=$steps_root/build/logs
+    steps_table=${2:-/dev/null}
     mkdir -p "$steps_logs"
+    [[ $steps_table == /dev/null ]] || : >"$steps_table"
     # A compiler cache only where there is one; a launcher that the user chose stays.
     if [[ -z ${CMAKE_CXX_COMPILER_LAUNCHER:-} ]] && command -v ccache >/dev/null; then
         export CMAKE_CXX_COMPILER_LAUNCHER=ccache
@@ -21,7 +23,10 @@ step() {
     local name=$1 log start=$SECONDS
     shift
     log=$steps_logs/${name// /-}.log
-    if "$@" >"$log" 2>&1; then
+    local code=0
+    "$@" >"$log" 2>&1 || code=$?
+    steps_note "$name" "$((SECONDS - start))"
+    if [[ $code -eq 0 ]]; then
         printf 'ok      %s (%d s)\n' "$name" "$((SECONDS - start))"
         return 0
     fi
@@ -31,6 +36,10 @@ step() {
         tail -n 60 "$log"
     } >&2
     return 1
+}
+
+steps_note() { # NAME SECONDS
+    printf '%d,%s\n' "$2" "$1" >>"$steps_table"
 }
 
 steps_end() {
