@@ -9,31 +9,45 @@ usage() {
 Example: ./test.sh          the release build and its tests, some minutes on two cores
          ./test.sh --all    all that CI runs: also sanitizers, a Jetson's build under an
                             emulator, equal verdicts of all builds, exact oracle, model
-                            check, fuzzing, static checks; 30 to 60 minutes
-         ./test.sh --night  --all, and what takes longest: all tests with sanitizers, those
-                            labelled night, the clang build, ten minutes of each fuzz target;
-                            about four hours
+                            check, static checks; what is rare only where something that it
+                            reaches has changed since a run that left nothing out
+         ./test.sh --night [PART...]
+                            everything, in all builds: also the longest tests, all mutants,
+                            each source compiled by itself, ten minutes of each fuzz target.
+                            PART: sanitizers, release, clang, jetson, verdicts, tidy, fuzz or
+                            mutants [default: all, some four hours]
 Environment: AXG_SHARED_DATA   folder of real machines and logs for the tests labelled data
              AXG_REQUIRE_DATA  1 (or CI=true): a skipped data (--all: or oracle, vm,
                               model, browser, emulated or machine) test is a failure
-             AXG_FUZZ_SECONDS  how long each fuzz target runs [default: --all 8, --night 600]
+             AXG_FUZZ_SECONDS  how long each fuzz target runs [default: --all 0, the committed
+                              inputs once each; --night 600]
+             AXG_CHECKED_COMMIT  what --all compares with; none: it leaves nothing out
+                              [default: the last run on record that left nothing out]
+             AXG_COUNT_DIVISOR  of the usual number of random cases [default: 3; --night 1]
              AXG_JOBS          compilers and tests at once (default: the number of cores)
 END
 }
 
-all=no night=no
+all=no night=no parts=()
 for argument in "$@"; do
     case $argument in
         --all) all=yes ;;
         --night) all=yes night=yes ;;
         -h | --help) usage; exit 0 ;;
+        sanitizers | release | clang | jetson | verdicts | tidy | fuzz | mutants)
+            parts+=("$argument") ;;
         *) echo "test.sh: unknown argument '$argument'" >&2; usage >&2; exit 2 ;;
     esac
 done
+if [[ ${#parts[@]} -gt 0 && $night == no ]]; then
+    echo "test.sh: '${parts[0]}': a part needs --night" >&2
+    usage >&2
+    exit 2
+fi
 
 # shellcheck source=tests/tools/steps.sh
 source "$root/tests/tools/steps.sh"
-steps_begin "$root"
+steps_begin "$root" "$root/build/steps.csv"
 jobs=${AXG_JOBS:-$(nproc)}
 results=$steps_root/build/results
 rm -rf "$results"
@@ -55,100 +69,183 @@ summary() {
         echo "0 passed, 1 failed, 0 skipped"
         return 1
     fi
+    if [[ $all == yes ]]; then
+        python3 -B "$root/tests/tools/step_table.py" "$steps_table" "$root" --kind "$kind" || true
+    fi
     python3 "$root/tests/tools/ctest_summary.py" "${require[@]}" --failed-steps "$steps_failed" \
         "$results"
 }
+kind=day
+[[ $night == no ]] || kind=night
 trap 'summary; exit $?' EXIT
 
-run_ctest() { # PRESET [CTEST OPTION...]
-    local preset=$1
+is_part() { # NAME: whether it is asked for
+    [[ ${#parts[@]} -eq 0 || " ${parts[*]} " == *" $1 "* ]]
+}
+
+setup() { # [OPTION]
+    local start=$SECONDS
+    "$root/setup.sh" "$@"
+    steps_note packages $((SECONDS - start))
+}
+
+run_ctest() { # PRESET RESULTS [CTEST OPTION...]
+    local preset=$1 name=$2 rare=''
+    shift 2
+    ctest --test-dir "$root/build/$preset" --show-only=json-v1 >"$results/$name.json"
+    if [[ $night == no && $all == yes ]]; then
+        rare=$(python3 -B "$root/tests/tools/changed.py" "$root" --left-out "$results/$name.json")
+        echo "left out, for nothing that they reach has changed: ${rare:-none}"
+    fi
+    # One more at once than there are cores: a guest waits for half of its time.
+    ctest --test-dir "$root/build/$preset" -j $((jobs + 1)) --output-on-failure --no-tests=error \
+        --output-junit "$results/$name.xml" ${rare:+-E "$rare"} "$@"
+}
+
+# configure PRESET [CMAKE OPTION...]: by day the sources of a room, and the tests of a folder, are
+# compiled at once; at night, and in packages, each by itself.
+configure() {
+    local preset=$1 units=ON
     shift
-    ctest --test-dir "$root/build/$preset" --show-only=json-v1 >"$results/$preset.json"
-    ctest --test-dir "$root/build/$preset" -j "$jobs" --output-on-failure --no-tests=error \
-        --output-junit "$results/$preset.xml" "$@"
+    [[ $night == no ]] || units=OFF
+    step "$preset configure" configure_preset "$preset" -DAXG_UNITY=$units \
+        -DAXG_UNITY_TESTS=$units "$@"
 }
 
-check_preset() { # PRESET LABELS_LEFT_OUT [CMAKE OPTION...]
-    local preset=$1 without=$2
+check_tests() { # PRESET NAME CTEST_OPTION...
+    local preset=$1 name=$2 results_file=$results/$1-$2.xml
     shift 2
-    step "$preset configure" configure_preset "$preset" $tests "$@" || return 0
-    step "$preset build" build_preset "$preset" || return 0
-    check_tests "$preset" -LE "^($without)$"
-}
-
-check_labels() { # PRESET "TARGET..." LABEL...: these, the programs, and of the tests these alone
-    local preset=$1 targets labels
-    read -ra targets <<<"axguard axguardd $2"
-    shift 2
-    step "$preset configure" configure_preset "$preset" -DAXG_WERROR=ON $rooms $tests || return 0
-    step "$preset build" build_preset "$preset" "${targets[@]}" "${@/%/_tests}" || return 0
-    labels=$(IFS='|' && echo "$*")
-    check_tests "$preset" -L "^($labels)$" -LE "^(timing|slow|long|night)$"
-}
-
-check_tests() { # PRESET CTEST_OPTION...
-    local preset=$1
-    if ! step "$preset tests" run_ctest "$@"; then
+    if ! step "$preset $name" run_ctest "$preset" "$preset-$name" "$@"; then
         # Failures that ctest's own result file names are counted from there, not once more here.
-        if [[ -s $results/$preset.xml ]] &&
-            ! python3 "$root/tests/tools/ctest_summary.py" "$results/$preset.xml" >/dev/null; then
+        if [[ -s $results_file ]] &&
+            ! python3 "$root/tests/tools/ctest_summary.py" "$results_file" >/dev/null; then
             steps_failed=$((steps_failed - 1))
         fi
     fi
 }
 
-# What is left out: by day what takes longest, which says little more than the rest does. And at
-# night each source is compiled by itself; by day the tests of a folder at once, and a room at once
-# where the build is not shipped.
-day='|night' rooms=-DAXG_UNITY=ON tests=-DAXG_UNITY_TESTS=ON
-[[ $night == no ]] || day='' rooms=-DAXG_UNITY=OFF tests=-DAXG_UNITY_TESTS=OFF
+# All of a configured build, and its tests but those so labelled.
+builds=()
+check_all() { # PRESET LABELS_LEFT_OUT
+    step "$1 build" build_preset "$1" || return 0
+    builds+=("$1")
+    check_tests "$1" tests -LE "^($2)$"
+}
+
+# Of a configured build these targets and the programs, and of the tests those so labelled.
+check_labels() { # PRESET "TARGET..." LABEL...
+    local preset=$1 targets labels
+    read -ra targets <<<"axguard axguardd $2"
+    shift 2
+    step "$preset build" build_preset "$preset" "${targets[@]}" || return 0
+    builds+=("$preset")
+    labels=$(IFS='|' && echo "$*")
+    check_tests "$preset" tests -L "^($labels)$" -LE '^(timing|slow|night|sources)$'
+}
+
+# By day a third of the random cases; at night all.
+[[ $night == yes ]] || export AXG_COUNT_DIVISOR=${AXG_COUNT_DIVISOR:-3}
 
 if [[ $all == no ]]; then
-    "$root/setup.sh"
-    check_preset host-release "timing|slow|peer|night" -DAXG_CUDA=ON
+    setup
+    # What a newcomer has to see pass. Kernels take longer to compile than all the rest.
+    cuda=-DAXG_CUDA=ON
+    [[ -e /dev/nvidiactl || -e /dev/nvhost-gpu || -e /dev/nvgpu ]] || cuda=-DAXG_CUDA=OFF
+    configure host-release "$cuda" -DAXG_UNIT_TESTS=all || exit 0
+    check_tests host-release sources -L '^sources$'
+    kinds=(unit property replay noalloc parity)
+    check_labels host-release "axguard-lab guard_a_trace axg_c ${kinds[*]/%/_tests}" "${kinds[@]}" \
+        style
     exit 0
 fi
 
-"$root/setup.sh" --all
+setup --all
 # Not in Debian: without a network its test is skipped.
 step "cantools from PyPI" python3 -m pip install -q --disable-pip-version-check --upgrade \
     --require-hashes --only-binary=:all: --target "$root/build/python" \
     -r "$root/tests/oracle/requirements.txt" || steps_failed=$((steps_failed - 1))
-# Kernels for one device: what they take of others is measured by device.kernel_budget, which
-# compiles them, and jetson-thor runs its packages through all checks.
-check_preset host-release "timing$day" -DAXG_WERROR=ON -DAXG_BENCHMARKS=ON -DAXG_CUDA=ON \
-    -DAXG_CUDA_ARCHITECTURES=90-real
-# clang's code: by day the sanitizers' build, of libraries, programs, fuzz targets and unit tests.
-# What tries thousands of cases, or runs a whole program, takes minutes there.
-builds=(host-release host-asan)
-if [[ $night == yes ]]; then
-    check_preset host-clang 'timing|oracle|peer|style|browser|model' -DAXG_WERROR=ON
-    builds+=(host-clang)
-    # It has the assertions of host-debug too.
-    check_preset host-asan "timing|slow|oracle|peer|style|model|noalloc|browser" -DAXG_WERROR=ON
-else
-    step "host-clang configure" configure_preset host-clang -DAXG_WERROR=ON # what clang-tidy reads
-    check_labels host-asan "axguard-lab fuzz_targets axg_lane_hash" unit parity
-fi
+
+# By day each unit test runs once: with sanitizers, but for those that take minutes there.
+short=short long=long
+[[ $night == no ]] || short=all long=all
+# By day kernels are compiled where a change reaches them or their tests: CI has no GPU to run them.
+cuda=ON
+[[ $night == yes ]] ||
+    python3 -B "$root/tests/tools/changed.py" "$root" --any 'cuda/*' 'tests/gpu/*' || cuda=OFF
+# A release build has kernels for one device: what they take of others is measured by
+# device.kernel_budget, which compiles them.
+configure_release() {
+    configure host-release -DAXG_WERROR=ON -DAXG_BENCHMARKS=ON -DAXG_CUDA=$cuda \
+        -DAXG_CUDA_ARCHITECTURES=90-real -DAXG_UNIT_TESTS=$long
+}
+
 # A Jetson's build, run under emulators; at night with its workbench, and packed. Its libraries come
 # from Debian and PyPI: where there is no network, there is no such build.
-if step "sysroot" "$root/toolchains/sysroot.sh" &&
-    step "guest" "$root/toolchains/sysroot.sh" --guest &&
-    step "CUDA for aarch64" "$root/toolchains/cuda_toolkit.sh" aarch64; then
-    check_labels jetson-thor "" emulated machine
-    if [[ $night == yes ]]; then
-        step "jetson-thor packages" "$root/toolchains/build_packages.sh" jetson-thor || true
+check_jetson() {
+    if step "sysroot" "$root/toolchains/sysroot.sh" &&
+        step "guest" "$root/toolchains/sysroot.sh" --guest &&
+        step "CUDA for aarch64" "$root/toolchains/cuda_toolkit.sh" aarch64; then
+        configure jetson-thor -DAXG_WERROR=ON -DAXG_CUDA=$cuda || return 0
+        check_labels jetson-thor "emulated_tests machine_tests" emulated machine
+        if [[ $night == yes ]]; then
+            step "jetson-thor packages" "$root/toolchains/build_packages.sh" jetson-thor || true
+        fi
+    elif [[ ${#require[@]} -eq 0 ]]; then
+        steps_failed=$((steps_failed - 1))
     fi
-    builds+=(jetson-thor)
-elif [[ ${#require[@]} -eq 0 ]]; then
-    steps_failed=$((steps_failed - 1))
+}
+
+# The cheapest first: what reads the sources alone, then what the sanitizers see.
+if is_part release && configure_release; then
+    check_tests host-release sources -L '^sources$'
 fi
-[[ $night == yes ]] || export AXG_VERDICT_POSES=${AXG_VERDICT_POSES:-100}
-step "equal verdicts of all builds" "$root/tests/tools/equal_verdicts.sh" "${builds[@]}" || true
-fuzz_seconds=8 tidy=()
-if [[ $night == yes ]]; then
-    fuzz_seconds=600 tidy=(--night)
+if is_part sanitizers && configure host-asan -DAXG_WERROR=ON -DAXG_UNIT_TESTS=$short; then
+    if [[ $night == yes ]]; then
+        check_all host-asan 'timing|slow|oracle|peer|style|model|noalloc|browser'
+    else
+        check_labels host-asan "axguard-lab axg_lane_hash fuzz_targets unit_tests" unit
+    fi
 fi
-step "clang-tidy" "$root/tests/tools/tidy.sh" host-clang "${tidy[@]}" || true
-step "fuzz" "$root/tests/tools/fuzz.sh" host-asan "${AXG_FUZZ_SECONDS:-$fuzz_seconds}" || true
+if is_part fuzz && [[ -d $root/build/host-asan ]]; then
+    seconds=0
+    [[ $night == no ]] || seconds=600
+    step "fuzz" "$root/tests/tools/fuzz.sh" host-asan "${AXG_FUZZ_SECONDS:-$seconds}" || true
+fi
+if is_part release; then
+    left_out='timing|sources|mutants'
+    [[ $night == yes ]] || left_out+='|night'
+    check_all host-release "$left_out"
+fi
+# What clang-tidy reads; at night it is built, and runs the tests, too.
+if is_part clang || is_part tidy; then
+    configure host-clang -DAXG_WERROR=ON || true
+fi
+if is_part clang && [[ $night == yes ]]; then
+    check_all host-clang 'timing|oracle|peer|style|browser|model'
+fi
+if is_part jetson; then
+    check_jetson
+fi
+if is_part verdicts; then
+    if [[ ${#builds[@]} -lt 2 ]]; then # it is asked for alone: builds of an earlier run
+        builds=(host-release host-asan host-clang jetson-thor)
+    fi
+    # The release build makes the scene; what is not built is left out.
+    compared=()
+    for preset in host-release host-asan host-clang jetson-thor; do
+        [[ " ${builds[*]} " != *" $preset "* || ! -x $root/build/$preset/axguard ]] ||
+            compared+=("$preset")
+    done
+    [[ $night == yes ]] || export AXG_VERDICT_POSES=${AXG_VERDICT_POSES:-100}
+    step "equal verdicts of all builds" "$root/tests/tools/equal_verdicts.sh" "${compared[@]}" ||
+        true
+fi
+if is_part tidy; then
+    tidy=()
+    [[ $night == no ]] || tidy=(--night)
+    step "clang-tidy" "$root/tests/tools/tidy.sh" host-clang "${tidy[@]}" || true
+fi
+if is_part mutants && [[ $night == yes ]]; then
+    configure_release && check_tests host-release mutants -L '^mutants$'
+fi
 exit 0
