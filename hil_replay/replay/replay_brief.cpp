@@ -45,9 +45,9 @@ std::string proven_text(const ReplayReport& report) {
         return fmt::format("{} permits sent, obeyed by no device", run.permits());
     }
     return fmt::format(
-        "{} of {} samples proven{}; {} permits sent", run.proven(), run.cycles().count(),
-        run.early() == 0 ? "" : fmt::format(", {} without enough history", run.early()),
-        run.permits());
+        "{} of {} samples proven{}{}", run.proven(), run.cycles().count(),
+        run.early() == 0 ? "" : fmt::format(", {} too early to know a speed", run.early()),
+        run.stop_count() == 1 ? ", then the stop" : "");
 }
 
 std::string cycle_text(const ReplayReport& report) {

@@ -16,7 +16,7 @@ namespace axg {
     return static_cast<double>(ns) * 1e-3;
 }
 
-/// "43839 of 43840 samples proven, 1 without enough history; 43810 permits sent"
+/// "43839 of 43840 samples proven, 1 too early to know a speed"
 [[nodiscard]] std::string proven_text(const ReplayReport& report);
 /// "us per cycle on this computer: median 9.7, p99 18.9, longest 134.5"
 [[nodiscard]] std::string cycle_text(const ReplayReport& report);

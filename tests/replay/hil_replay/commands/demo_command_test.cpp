@@ -62,11 +62,11 @@ TEST_F(DemoCommand, ShowsBothProgramsAndTheStopInPlainWords) {
     EXPECT_GE(std::stol(figures[1]) + 1, std::stol(figures[2])) << "all but the first";
     for (const char* const text :
          {"1  paper-trunnion-clean.ngc runs to its end\n", "2  paper-trunnion-demo.ngc drives ",
-          "us per cycle on this computer: median ", "; deadline 500 (",
+          "time of a cycle: median ", "; deadline 500 us",
           "stop at 40.854 s, line 699: G1 X0.0000 Y105.7850 ",
           "could not be proven clear within the time of a cycle\n",
           "they are at least 3.9125 mm apart, the proof of a stop needs up to 9.7087 mm\n",
-          "stops 0.219 s later: contact\n"}) {
+          "without the guard, cutter and plate are in contact 0.219 s later"}) {
         EXPECT_TRUE(shows(text)) << text << "\n" << screen;
     }
     EXPECT_FALSE(shows("leaf_pairs")) << "how the guard is built is a detail";
@@ -94,7 +94,7 @@ TEST_F(DemoCommand, WritesItsFilesAndKeepsWhatItDoesNotPrint) {
 TEST_F(DemoCommand, ItsNextStepsWorkAsPrinted) {
     const auto commands = next_commands(screen);
     ASSERT_EQ(commands.size(), 3U) << screen;
-    EXPECT_TRUE(shows("  # closed loop: ")) << "where a line has room, what it is for";
+    EXPECT_TRUE(shows("  # a simulated board brakes")) << "where a line has room, what it is for";
     const int codes[] = {kExitClean, kExitCollision, kExitClean};
     for (std::size_t i = 0; i < commands.size(); ++i) {
         EXPECT_EQ(shop->run_program("env", "sh -c '" + commands[i] + "'"), codes[i])
