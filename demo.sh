@@ -11,13 +11,14 @@ fi
 source "$root/tests/tools/steps.sh"
 steps_begin "$root"
 "$root/setup.sh"
-# Kernels take longer to compile than all the rest; a build that is there already stays as it is.
-cuda=()
-if [[ ! -e $root/build/host-release/CMakeCache.txt && ! -e /dev/nvidiactl && ! -e /dev/nvhost-gpu &&
-    ! -e /dev/nvgpu ]]; then
-    cuda=(-DAXG_CUDA=OFF)
+# The sources of a room at once, and no kernels where there is no GPU: they take longer to compile
+# than all the rest. A build that is there already stays as it is.
+options=()
+if [[ ! -e $root/build/host-release/CMakeCache.txt ]]; then
+    options=(-DAXG_UNITY=ON)
+    [[ -e /dev/nvidiactl || -e /dev/nvhost-gpu || -e /dev/nvgpu ]] || options+=(-DAXG_CUDA=OFF)
 fi
-step configure configure_preset host-release "${cuda[@]}"
+step configure configure_preset host-release "${options[@]}"
 step build build_preset host-release axguard
 steps_end || exit 1
 exec "$root/build/host-release/axguard" demo "$@"
