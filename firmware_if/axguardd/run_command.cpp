@@ -136,6 +136,28 @@ bool is_admitted(const RunArguments& arguments, const LoadedMachine& loaded, Liv
     return is_waived;
 }
 
+/// False: a status socket was asked for and could not be opened; the reason is printed.
+bool open_status(const RunArguments& arguments, StatusSocket& status_socket) {
+    if (arguments.status_socket.empty()) {
+        return true;
+    }
+    std::string fault;
+    status_socket = StatusSocket::open(arguments.status_socket, fault);
+    if (!status_socket.is_open()) {
+        fmt::print(stderr, "axguardd: {}\n", fault);
+    }
+    return status_socket.is_open();
+}
+
+void log_start(const RunArguments& arguments, const Machine& machine) {
+    fmt::print(stderr, "axguardd: {} on {}, {} mode, permits valid for {} to {} us{}\n",
+               machine.name, arguments.bus, arguments.mode, time_limits(machine).least_permit_us,
+               time_limits(machine).permit_us,
+               arguments.threads.guard.accepts_local
+                   ? ", accepting frames of this host as the board's"
+                   : "");
+}
+
 /// Everything that is fallible and slow, before the first frame.
 int guard_bus(const RunArguments& arguments, LoadedMachine& loaded) {
     const bool is_stoppable = arguments.mode == "stoppable";
@@ -174,12 +196,8 @@ int guard_bus(const RunArguments& arguments, LoadedMachine& loaded) {
         return kExitUnfit;
     }
     StatusSocket status_socket;
-    if (!arguments.status_socket.empty()) {
-        status_socket = StatusSocket::open(arguments.status_socket, fault);
-        if (!status_socket.is_open()) {
-            fmt::print(stderr, "axguardd: {}\n", fault);
-            return kExitInput;
-        }
+    if (!open_status(arguments, status_socket)) {
+        return kExitInput;
     }
     const StatusLine status_line(machine, arguments.bus, arguments.mode,
                                  configuration_hash(machine, loaded.meshes));
@@ -200,12 +218,7 @@ int guard_bus(const RunArguments& arguments, LoadedMachine& loaded) {
     const Engine engine = engines.engine();
     GuardChain chain(machine, engine, *engines.containment_test, parts.stop_certificate(),
                      parts.speed_advisory(), parts.margin_advisory());
-    fmt::print(stderr, "axguardd: {} on {}, {} mode, permits valid for {} to {} us{}\n",
-               machine.name, arguments.bus, arguments.mode, time_limits(machine).least_permit_us,
-               time_limits(machine).permit_us,
-               arguments.threads.guard.accepts_local
-                   ? ", accepting frames of this host as the board's"
-                   : "");
+    log_start(arguments, machine);
     if (is_stoppable) {
         fmt::print(stderr, "axguardd: plan: {}\n", format_plan(parts.stop_certificate()->plan()));
     }

@@ -63,7 +63,7 @@ std::uint32_t host_stages_max(const CycleDemand& demand) {
 
 /// What the longest cycle consists of.
 std::string parts_of(const MeasuredGpuCycle& longest) {
-    const std::string launches =
+    std::string launches =
         fmt::format("{} {}", longest.launches, longest.launches == 1 ? "launch" : "launches");
     if (longest.host_us == 0) {
         return launches;

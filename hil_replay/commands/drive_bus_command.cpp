@@ -195,6 +195,28 @@ int refuse(const DriveArguments& arguments, const Machine& machine) {
     return kExitClean;
 }
 
+/// The board that the machine file promises, with the configuration that was read.
+BusDriveOptions bus_options(const DriveArguments& arguments, const Machine& machine,
+                            const DriveOptions& read) {
+    BusDriveOptions options{.board = promised_live_board(machine, arguments.seed),
+                            .obeys_cap = arguments.obeys_cap};
+    options.board.tick_us = kMotionStepUs;
+    options.board.hashes = read.board.hashes;
+    return options;
+}
+
+/// Text and files. Returns the exit code.
+int write_results(const DriveArguments& arguments, const LoadedMachine& loaded,
+                  const BusDriveResult& result, const DriveReport& report,
+                  const std::deque<BoardSample>& samples) {
+    const int exit_code =
+        exit_code_of_bus(arguments, loaded.machine, result, report.contact.has_value());
+    if (result.drive.encoded.status == EncodeStatus::ok) {
+        print_drive(report, detail_of(arguments.has_details), arguments.json.words());
+    }
+    return write_outputs(arguments, loaded, report, samples) ? exit_code : kExitInternal;
+}
+
 }  // namespace
 
 int run_bus_drive(const DriveArguments& arguments) {
@@ -223,10 +245,7 @@ int run_bus_drive(const DriveArguments& arguments) {
         return kExitCan;
     }
     double speed_share = 1.0 / kSpeedCapRapid, lost_s = 0;
-    BusDriveOptions options{.board = promised_live_board(machine, arguments.seed),
-                            .obeys_cap = arguments.obeys_cap};
-    options.board.tick_us = kMotionStepUs;
-    options.board.hashes = read.board.hashes;
+    BusDriveOptions options = bus_options(arguments, machine, read);
     const bool keeps_cap = machine.guard.cap != CapPromise::none;
     const bool is_slowed = arguments.obeys_cap || has_clearance_levels(machine) || keeps_cap;
     double* const share = is_slowed ? &speed_share : nullptr;
@@ -267,11 +286,7 @@ int run_bus_drive(const DriveArguments& arguments) {
     if (!is_finished) {
         look_for_ways_out(arguments, loaded, containment_test, read, report);
     }
-    const int exit_code = exit_code_of_bus(arguments, machine, result, report.contact.has_value());
-    if (result.drive.encoded.status == EncodeStatus::ok) {
-        print_drive(report, detail_of(arguments.has_details), arguments.json.words());
-    }
-    return write_outputs(arguments, loaded, report, samples) ? exit_code : kExitInternal;
+    return write_results(arguments, loaded, result, report, samples);
 }
 
 }  // namespace axg

@@ -231,10 +231,13 @@ std::string csv_axes(const Machine& machine, std::span<const double> positions) 
 
 namespace {
 
-/// Text, CSV, page and JSON. Returns the exit code: `exit_code` where all were written.
+/// Text, CSV, page and JSON. Returns the exit code, which says first what could not be written.
 int write_results(const DriveArguments& arguments, const LoadedMachine& loaded,
                   const DriveReport& report, const DriveCsv& csv, PageRecorder* page,
-                  int exit_code) {
+                  bool gpu_failed) {
+    const int exit_code = gpu_failed ? kExitGpu
+                                     : exit_code_of(arguments, loaded.machine, report.result,
+                                                    report.contact.has_value());
     if (report.result.encoded.status == EncodeStatus::ok) {
         print_drive(report, detail_of(arguments.has_details), arguments.json.words());
     }
@@ -250,12 +253,11 @@ int run_drive(const DriveArguments& arguments) {
     DriveOptions options;
     GcodeOptions gcode;
     GcodeResult reading;
-    const int refused = read_inputs(arguments, loaded, options, gcode, reading);
-    if (refused != kExitClean) {
+    if (const int refused = read_inputs(arguments, loaded, options, gcode, reading);
+        refused != kExitClean) {
         return refused;
     }
     const Machine& machine = loaded.machine;
-    const Program& program = reading.program;
     const bool is_stoppable = arguments.mode == "stoppable";
     GuardParts made(loaded, is_stoppable, machine.guard.speed_cap || arguments.obeys_cap);
     if (!made.fault().empty()) {
@@ -289,11 +291,11 @@ int run_drive(const DriveArguments& arguments) {
                           ? nullptr
                           : std::make_unique<PageRecorder>(loaded, engine.engine());
     const bool wants_length = arguments.obeys_cap || keeps_cap || isatty(STDERR_FILENO) == 1;
-    const double whole_s = wants_length ? motion_seconds(program, limits, motion) : 0;
+    const double whole_s = wants_length ? motion_seconds(reading.program, limits, motion) : 0;
     ProgramLines lines{.program = arguments.gcode.program};
     const DriveResult result =
         run_observed(arguments, machine, chain, gcode.start,
-                     make_program_motion(program, limits, motion,
+                     make_program_motion(reading.program, limits, motion,
                                          options.board.axis_shares == nullptr ? share : nullptr,
                                          &lost_s, options.board.axis_shares),
                      whole_s, options, csv, page.get(), judge, lines);
@@ -313,10 +315,7 @@ int run_drive(const DriveArguments& arguments) {
     if (!is_finished) {
         look_for_ways_out(arguments, loaded, containment_test, options, report);
     }
-    const int exit_code = report_if_gave_up(chosen) ? kExitGpu
-                                                    : exit_code_of(arguments, machine, result,
-                                                                   report.contact.has_value());
-    return write_results(arguments, loaded, report, csv, page.get(), exit_code);
+    return write_results(arguments, loaded, report, csv, page.get(), report_if_gave_up(chosen));
 }
 
 /// An option of the guard in this process, and what to do instead where there is none.

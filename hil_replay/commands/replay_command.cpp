@@ -188,6 +188,15 @@ int exit_code_of(const ReplayRun& run, bool is_realtime) {
     return run.withheld().samples != 0 || run.permits() == 0 ? kExitCollision : kExitClean;
 }
 
+int exit_code_of(const ReplayReport& report, const Outputs& outputs) {
+    if (!report.end.fault.empty()) {
+        return kExitCan;
+    }
+    const int found = exit_code_of(report.run, report.is_realtime);
+    const bool is_rejected = outputs.program && outputs.program->is_rejected();
+    return found == kExitClean && is_rejected ? kExitInput : found;  // a stop says more
+}
+
 /// A black box has its own mode, and is judged to its end.
 int replay_dump(const ReplayArguments& arguments, LoadedMachine& loaded) {
     if (!arguments.csv.empty() || !arguments.report.empty() || arguments.keep_going ||
@@ -311,14 +320,23 @@ int replay(const ReplayArguments& arguments, const ReplayObserver& observer) {
     if (observer) {
         observer(report);
     }
-    const bool written = write_outputs(arguments, report, outputs);
-    int found = gpu_failed           ? kExitGpu
-                : !end.fault.empty() ? kExitCan
-                                     : exit_code_of(run, arguments.is_realtime);
-    if (found == kExitClean && outputs.program && outputs.program->is_rejected()) {
-        found = kExitInput;  // a stop says more
+    if (!write_outputs(arguments, report, outputs)) {
+        return kExitInternal;
     }
-    return written ? found : kExitInternal;
+    return gpu_failed ? static_cast<int>(kExitGpu) : exit_code_of(report, outputs);
+}
+
+/// How options about the program of the trace contradict each other; empty: they do not.
+std::string program_conflict(const ReplayArguments& arguments, bool has_program, bool has_setting) {
+    if (has_program && arguments.gcode.program.empty()) {
+        return "--program: empty name. Pass a G-code program.";
+    }
+    if (has_program) {
+        return arguments.lines.empty() ? "" : "--program replaces --lines. Leave one of them out.";
+    }
+    return has_setting ? "--start, --work-offset, --tool and other options about a program need "
+                         "one. Pass it with --program."
+                       : "";
 }
 
 }  // namespace
@@ -383,17 +401,9 @@ void add_replay(CommandLine& line, const ReplayObserver& observer) {
     command.set_action([arguments, files = command.files(), program, settings, observer] {
         const bool has_setting = std::any_of(settings.begin(), settings.end(),
                                              [](const Option& one) { return one.is_given(); });
-        if (program.is_given() && arguments->gcode.program.empty()) {
-            fmt::print(stderr, "axguard: --program: empty name. Pass a G-code program.\n");
-            return static_cast<int>(kExitUsage);
-        }
-        if (program.is_given() ? !arguments->lines.empty() : has_setting) {
-            fmt::print(
-                stderr, "axguard: {}\n",
-                program.is_given()
-                    ? "--program replaces --lines. Leave one of them out."
-                    : "--start, --work-offset, --tool and other options about a program need one. "
-                      "Pass it with --program.");
+        const std::string conflict = program_conflict(*arguments, program.is_given(), has_setting);
+        if (!conflict.empty()) {
+            fmt::print(stderr, "axguard: {}\n", conflict);
             return static_cast<int>(kExitUsage);
         }
         const std::string lines = program_lines_name(arguments->trace);  // read without an option

@@ -81,6 +81,17 @@ nlohmann::ordered_json rest_json(const Machine& machine, const DriveResult& resu
     return out;
 }
 
+nlohmann::ordered_json pairs_json(const DriveReport& report) {
+    auto pairs = nlohmann::ordered_json::array();
+    for (const PairAtRest& pair : pairs_at_rest(report)) {
+        pairs.push_back({{"pair", pair_name(report.machine, pair.pair)},
+                         {"clearance_mm", pair.clearance_mm},
+                         {"margin_mm", report.machine.pairs[pair.pair].margin_mm},
+                         {"touching", pair.is_touching}});
+    }
+    return pairs;
+}
+
 }  // namespace
 
 std::string describe_drive(const DriveReport& report) {
@@ -139,13 +150,7 @@ std::string describe_drive(const DriveReport& report) {
                           {"pair", pair_name(machine, report.contact->pair)}};
     }
     out["rest"] = rest_json(machine, result);
-    auto& pairs = out["pairs"] = nlohmann::ordered_json::array();
-    for (const PairAtRest& pair : pairs_at_rest(report)) {
-        pairs.push_back({{"pair", pair_name(machine, pair.pair)},
-                         {"clearance_mm", pair.clearance_mm},
-                         {"margin_mm", machine.pairs[pair.pair].margin_mm},
-                         {"touching", pair.is_touching}});
-    }
+    out["pairs"] = pairs_json(report);
     if (result.state != BoardState::finished) {
         out["escapes"] = escapes_json(machine, report.escapes);
     }
