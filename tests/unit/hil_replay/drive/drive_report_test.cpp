@@ -35,6 +35,10 @@ Engine engine_without_proofs() {
 }
 
 struct Driven {
+    Driven() {  // for a second
+        result.moving_since_us = 0;
+        result.ended_us = 1'000'000;
+    }
     [[nodiscard]] DriveReport report() const {
         return {machine, engine_without_proofs(), result, program, mode, 1};
     }
