@@ -95,6 +95,9 @@ def options_of(arguments):
     parser.add_argument("root", type=pathlib.Path, help="the checkout; nothing is written to it")
     parser.add_argument("folder", type=pathlib.Path, help="for the copy and its build")
     parser.add_argument("--only", default="", help="mutants whose file or test contains this text")
+    parser.add_argument("--shard", default="0/1", metavar="I/N",
+                        help="every Nth mutant from the Ith on, so that several machines or copies "
+                        "share the work [default: 0/1]")
     parser.add_argument("--jobs", type=int, default=int(os.environ.get("AXG_JOBS") or
                                                         len(os.sched_getaffinity(0))))
     parser.epilog = "What follows -- are options of cmake."
@@ -113,6 +116,8 @@ def main():
     names = tracked_files(root)
     mutants, faults = mutant_list.faults_in(root, names)
     mutants = [m for m in mutants if options.only in m.file or options.only in m.test]
+    index, count = map(int, options.shard.split("/"))
+    mutants = mutants[index::count]
     if faults or not mutants:
         print("\n".join(faults) or f"no mutant contains '{options.only}'")
         sys.exit(1)
