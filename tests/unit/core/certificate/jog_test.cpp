@@ -481,6 +481,7 @@ TEST_F(JogCertificateTest, WithoutRoomForItsLadderNoJogIsPermitted) {
 struct LadderCount {
     CpuEngine* engine;
     std::uint32_t calls = 0, queries = 0, groups = 0;
+    WorkLists share{};  // of the first group
 
     static void run(void* self, std::span<const Query> queries,
                     std::span<QueryResult> results) noexcept {
@@ -493,6 +494,7 @@ struct LadderCount {
             ++count.calls;
             count.queries += static_cast<std::uint32_t>(queries.size());
             count.groups = static_cast<std::uint32_t>(groups.size());
+            count.share = groups[0].share;
         }
         count.engine->run(queries, results, groups);
     }
@@ -512,6 +514,22 @@ TEST_F(JogCertificateTest, ALadderIsAskedOfPairsWithinTheirMarginAlone) {
     EXPECT_EQ(count.calls, 2U);
     EXPECT_EQ(count.queries, 2 + kJogRungs - 1) << "and the rungs of one";
     EXPECT_EQ(count.groups, 1U) << "which is a group";
+}
+
+// A ladder takes the place of a proof, whose bound it must not exceed: its groups share the lists
+// that the plan has for it.
+TEST_F(JogCertificateTest, ALadderHasTheSharesOfItsLists) {
+    m.plan = default_plan(m, stop_tasks(m));
+    certificate.emplace(certificate_over(scene, m));
+    LadderCount count{&scene.engine()};
+    engine = {.self = &count, .run = LadderCount::run, .run_groups = LadderCount::run_groups};
+    ASSERT_TRUE(cycle(3, kUp).has_permit);
+    ASSERT_EQ(count.groups, 2U);
+    EXPECT_EQ(count.share, share_of(jog_lists(*m.plan).margins, 2));
+    snapshot.sample = 0;
+    ASSERT_TRUE(cycle(0.3, kUp).has_permit);
+    ASSERT_EQ(count.groups, 1U);
+    EXPECT_EQ(count.share, share_of(jog_lists(*m.plan).rungs, 1));
 }
 
 // What finds the floors takes as long as a proof: it is the whole of that cycle, which is neither a
