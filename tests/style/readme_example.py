@@ -12,8 +12,8 @@ COUNTS = "no one two three four five six seven eight nine ten eleven twelve".spl
 REVIEW = re.compile(r"In the example (\w+) lines stay, the limits of (\w+) axes and `(\w+)`")
 UNCHECKED = re.compile(r"states why (\w+) pairs need no check")
 DISTANCES = re.compile(
-    r"stops the cutter (?P<height>\d+) mm above the plate\. The longest stop from there takes "
-    r"(?P<stop>\d+) mm: (?P<braking>\d+) mm of braking .* The quick proof needs (?P<proof>\d+) mm; "
+    r"the guard stops (?P<height>\d+) mm above it\. The longest stop from there takes "
+    r"(?P<stop>\d+) mm: (?P<braking>\d+) mm of braking .* The quick proof needs (?P<proof>\d+) mm, "
     r".*\(`(?P<key>free_jerk: limited)` below `guard:`\), (?P<with_jerk>\d+) mm suffice")
 
 
