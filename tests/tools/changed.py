@@ -23,6 +23,7 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "style"))
 from contraction_flags import compiled_by  # noqa: E402
+from layers import reachable  # noqa: E402
 from sources import includes, is_cpp, read_text, tracked_files  # noqa: E402
 
 PRODUCT = re.compile(r"(core|config|firmware_if|hil_replay)/.*\.cpp$")
@@ -70,13 +71,7 @@ def includers(files, text_of):
 
 def with_includers(changed, graph):
     """The changed files, and each that includes one of them, through others too."""
-    seen, waiting = set(changed), list(changed)
-    while waiting:
-        for name in graph.get(waiting.pop(), ()):
-            if name not in seen:
-                seen.add(name)
-                waiting.append(name)
-    return seen
+    return changed.union(*(reachable(graph, name) for name in changed))
 
 
 class Change:
