@@ -13,6 +13,7 @@
 
 #include "config/mesh/load_meshes.hpp"
 #include "config/text/quote_text.hpp"
+#include "core/base/finite.hpp"
 
 namespace axg {
 namespace {
@@ -68,6 +69,9 @@ void add_axes(Lines& lines, const Machine& machine) {
         lines.add(key + ".acceleration", {axis.acceleration_max});
         lines.add(key + ".jerk", {axis.jerk_max});
         lines.add(key + ".stopping", {axis.stopping_min});
+        if (is_finite(axis.stopping_most)) {
+            lines.add(key + ".stopping_most", {axis.stopping_most});
+        }
         lines.add(key + ".position_error", {axis.position_error});
         lines.add(key + ".following_error", {axis.following_error});
     }

@@ -139,6 +139,7 @@ void fill_axes(YamlNode& axes, const Machine& machine) {
         const Axis& axis = machine.axes[index_of(machine.axes, entry.key)];
         const bool is_rotary = axis.kind == AxisKind::rotary;
         const double unit = is_rotary ? 180.0 / kPi : 1.0;
+        fill_none(entry.value, {is_rotary ? "stopping_most_deg_s2" : "stopping_most_mm_s2"});
         fill(entry.value, is_rotary ? "position_error_deg" : "position_error_mm",
              value_of(axis.position_error * unit));
         fill(entry.value, is_rotary ? "following_error_deg" : "following_error_mm",

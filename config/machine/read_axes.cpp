@@ -75,6 +75,21 @@ void read_jerk(MapReader& reader, const char* key, Axis& axis) {
     }
 }
 
+/// The hardest stop: no softer than the guaranteed one, nor than free motion may brake.
+void read_stopping_most(MapReader& reader, const char* key, Axis& axis) {
+    double most = 0;
+    if (!reader.number(key, Need::optional, kRate, most)) {
+        return;
+    }
+    const double least = std::max(axis.stopping_min, axis.acceleration_max);
+    if (most < least) {
+        reader.report(key, shown(most),
+                      "at least " + shown(least) + ", the larger of stopping and acceleration");
+        return;
+    }
+    axis.stopping_most = most;
+}
+
 /// The place of an axis on the bus, where the file states it.
 struct Slot {
     bool is_stated = false;
@@ -128,11 +143,12 @@ void put_in_order(const std::vector<Slot>& slots, MachineDraft& draft) {
 
 void read_linear(const YamlNode& node, const std::string& path, FaultList& faults, Axis& axis,
                  Slot& slot) {
-    MapReader reader{node,
-                     path,
-                     {"kind", "slot", "travel_mm", "speed_mm_min", "acceleration_mm_s2",
-                      "jerk_mm_s3", "stopping_mm_s2", "position_error_mm", "following_error_mm"},
-                     faults};
+    MapReader reader{
+        node,
+        path,
+        {"kind", "slot", "travel_mm", "speed_mm_min", "acceleration_mm_s2", "jerk_mm_s3",
+         "stopping_mm_s2", "stopping_most_mm_s2", "position_error_mm", "following_error_mm"},
+        faults};
     slot = read_slot(reader);
     read_travel(reader, axis);
     double speed_mm_min = 0;
@@ -141,6 +157,7 @@ void read_linear(const YamlNode& node, const std::string& path, FaultList& fault
     reader.number("acceleration_mm_s2", Need::required, kRate, axis.acceleration_max);
     read_jerk(reader, "jerk_mm_s3", axis);
     reader.number("stopping_mm_s2", Need::required, kRate, axis.stopping_min);
+    read_stopping_most(reader, "stopping_most_mm_s2", axis);
     axis.position_error = kPositionErrorMm;
     axis.states_position_error =
         reader.number("position_error_mm", Need::optional, kErrorMm, axis.position_error);
@@ -154,7 +171,7 @@ void read_rotary(const YamlNode& node, const std::string& path, FaultList& fault
         node,
         path,
         {"kind", "slot", "travel_deg", "speed_deg_s", "acceleration_deg_s2", "jerk_deg_s3",
-         "stopping_deg_s2", "position_error_deg", "following_error_deg"},
+         "stopping_deg_s2", "stopping_most_deg_s2", "position_error_deg", "following_error_deg"},
         faults};
     slot = read_slot(reader);
     read_travel(reader, axis);
@@ -162,13 +179,15 @@ void read_rotary(const YamlNode& node, const std::string& path, FaultList& fault
     reader.number("acceleration_deg_s2", Need::required, kRate, axis.acceleration_max);
     read_jerk(reader, "jerk_deg_s3", axis);
     reader.number("stopping_deg_s2", Need::required, kRate, axis.stopping_min);
+    read_stopping_most(reader, "stopping_most_deg_s2", axis);
     axis.position_error = kPositionErrorDeg;
     axis.states_position_error =
         reader.number("position_error_deg", Need::optional, kErrorDeg, axis.position_error);
     axis.states_following_error =
         reader.number("following_error_deg", Need::optional, kErrorDeg, axis.following_error);
-    for (double* angle : {&axis.min, &axis.max, &axis.speed_max, &axis.acceleration_max,
-                          &axis.stopping_min, &axis.position_error, &axis.following_error}) {
+    for (double* angle :
+         {&axis.min, &axis.max, &axis.speed_max, &axis.acceleration_max, &axis.stopping_min,
+          &axis.stopping_most, &axis.position_error, &axis.following_error}) {
         *angle = *angle * kPi / 180.0;
     }
     axis.jerk_max = has_jerk_limit(axis) ? axis.jerk_max * kPi / 180.0 : kNoJerkLimit;
@@ -177,13 +196,14 @@ void read_rotary(const YamlNode& node, const std::string& path, FaultList& fault
 /// An axis without a kind that we know: keys of both kinds are let pass, the kind is reported.
 void report_kind(const YamlNode& node, const std::string& path, FaultList& faults) {
     constexpr std::array<std::string_view, 2> kKinds{"linear", "rotary"};
-    MapReader reader{node,
-                     path,
-                     {"kind", "slot", "travel_mm", "speed_mm_min", "acceleration_mm_s2",
-                      "jerk_mm_s3", "stopping_mm_s2", "travel_deg", "speed_deg_s",
-                      "acceleration_deg_s2", "jerk_deg_s3", "stopping_deg_s2", "position_error_mm",
-                      "following_error_mm", "position_error_deg", "following_error_deg"},
-                     faults};
+    MapReader reader{
+        node,
+        path,
+        {"kind", "slot", "travel_mm", "speed_mm_min", "acceleration_mm_s2", "jerk_mm_s3",
+         "stopping_mm_s2", "stopping_most_mm_s2", "travel_deg", "speed_deg_s",
+         "acceleration_deg_s2", "jerk_deg_s3", "stopping_deg_s2", "stopping_most_deg_s2",
+         "position_error_mm", "following_error_mm", "position_error_deg", "following_error_deg"},
+        faults};
     std::size_t kind = 0;
     reader.choice("kind", Need::required, kKinds, kind);
 }

@@ -226,6 +226,7 @@ bool begin_stop(LimitWatch& watch, const LimitRules& rules, const LimitFact& cau
         look_back(stop, watch, of, cause.axis, span);
     }
     stop.falls_from = std::min(stop.falls_from, falls_from);
+    begin_machine_stop(watch.machine_stop, cause, watch.newest);
     return true;
 }
 
@@ -244,6 +245,15 @@ bool is_at_rest(const LimitWatch& watch, const AxisLimitRules& of, std::uint32_t
         }
     }
     return seen > kRestPointsMin && high - low <= 2 * position_error(of);
+}
+
+MachineRest rest_of(const LimitWatch& watch, const LimitRules& rules) noexcept {
+    MachineRest out{.is_any_stopping = false, .are_all_at_rest = true};
+    for (std::uint32_t i = 0; watch.machine_stop.is_on && i < rules.axis_count; ++i) {
+        out.is_any_stopping = out.is_any_stopping || watch.stops[i].is_on;
+        out.are_all_at_rest = out.are_all_at_rest && is_at_rest(watch, rules.axes[i], i);
+    }
+    return out;
 }
 
 /// The speed falls, and rest follows in time; if not, what began the stop was no stop.
@@ -305,6 +315,46 @@ LimitFact judge_ranges(LimitWatch& watch, const LimitRules& rules, const MotionH
     return begin_stop(watch, rules, fact, falls_from, kSamplesKept) ? LimitFact{} : fact;
 }
 
+/// An axis whose count stays the same was somewhere within its errors at both ends. From a speed of
+/// at least s, no acceleration within its limits holds it there: it has to come s t - a t^2 / 2
+/// far.
+LimitFact judge_resting_count(LimitWatch& watch, const LimitRules& rules, std::uint32_t axis,
+                              std::uint64_t sample) noexcept {
+    const AxisLimitRules& of = rules.axes[axis];
+    RestingCount& resting = watch.resting[axis];
+    const double position = point_at(watch, watch.newest)[axis];
+    if (watch.newest == resting.since || position != resting.position) {
+        resting = {.since = watch.newest, .position = position};
+        return {};
+    }
+    const double nominal =
+        nominal_s(rules, of, static_cast<std::uint32_t>(watch.newest - resting.since));
+    const double shortest_s = nominal * (1 - of.errors.period_share) - of.errors.latch_jitter_s;
+    const double longest_s = nominal * (1 + of.errors.period_share) + of.errors.latch_jitter_s;
+    const bool may_have_turned =
+        of.unlimited && !(of.limits.speed_max * longest_s + 2 * position_error(of) < 0.99 * kPi);
+    const auto way = [&](double t) {
+        return resting.speed * t - 0.5 * of.limits.acceleration_max * t * t;
+    };
+    const double least = std::min(way(shortest_s), way(longest_s));  // concave: at an end
+    if (watch.stops[axis].is_on || may_have_turned || !(shortest_s > 0) ||
+        !(least > 2 * position_error(of) * kUp)) {
+        return {};
+    }
+    const LimitFact frozen{LimitKind::frozen_axis, axis, resting.speed, 0, sample};
+    const std::uint64_t falls_from = rules.stops_keep_path ? kNever : watch.newest;
+    return begin_stop(watch, rules, frozen, falls_from, watch.newest - resting.since) ? LimitFact{}
+                                                                                      : frozen;
+}
+
+/// The least speed of an axis, either way, where its count came to rest at this stride.
+void note_resting_speed(LimitWatch& watch, std::uint32_t axis) noexcept {
+    const AxisRange& range = watch.believed[watch.newest % kLimitPoints][axis];
+    if (watch.resting[axis].since == watch.newest) {
+        watch.resting[axis].speed = std::max({0.0, range.speed_low, -range.speed_high});
+    }
+}
+
 LimitFact judge_differences(LimitWatch& watch, const LimitRules& rules, std::uint32_t axis,
                             std::uint64_t sample) noexcept {
     const AxisLimitRules& of = rules.axes[axis];
@@ -335,6 +385,11 @@ LimitFact judge_differences(LimitWatch& watch, const LimitRules& rules, std::uin
                 !begin_stop(watch, rules, broken, falls_after(0), std::uint64_t{2} * strides)) {
                 return broken;
             }
+            if (figures.acceleration > of.stopping_most * kUp) {
+                begin_machine_stop(
+                    watch.machine_stop,
+                    fact(LimitKind::stopping, figures.acceleration, of.stopping_most), now);
+            }
         }
         if (is_judged(3) && !stop.is_on && of.errors.is_jerk_limited &&
             figures.jerk > of.limits.jerk_max * kUp) {
@@ -350,24 +405,6 @@ LimitFact judge_differences(LimitWatch& watch, const LimitRules& rules, std::uin
 }
 
 }  // namespace
-
-const char* to_text(LimitKind kind) noexcept {
-    switch (kind) {
-        case LimitKind::none:
-            return "none";
-        case LimitKind::speed:
-            return "speed";
-        case LimitKind::acceleration:
-            return "acceleration";
-        case LimitKind::jerk:
-            return "jerk";
-        case LimitKind::speed_range:
-            return "speed_range";
-        case LimitKind::acceleration_range:
-            return "acceleration_range";
-    }
-    return "none";
-}
 
 LimitRules limit_rules(const Machine& machine, std::span<const double> count) noexcept {
     AXG_ASSERT(count.size() >= machine.axes.size());
@@ -401,9 +438,20 @@ LimitRules limit_rules(const Machine& machine, std::span<const double> count) no
     // Axes that stop along one path rest together: 1/R + R/J, and neither is longer than that of
     // the axis for which it is longest.
     out.stops_keep_path = machine.guard.promise == StopPromise::path_keeping;
-    for (std::uint32_t i = 0; out.stops_keep_path && i < out.axis_count; ++i) {
-        out.axes[i].stop_strides = strides(ramp_most_s + braking_most_s);
+    for (std::uint32_t i = 0; i < out.axis_count; ++i) {
+        AxisLimitRules& axis = out.axes[i];
+        if (out.stops_keep_path) {
+            axis.stop_strides = strides(ramp_most_s + braking_most_s);
+        } else {
+            axis.stopping_most = machine.axes[i].stopping_most;
+        }
+        out.machine_stop.braking_strides =
+            std::max(out.machine_stop.braking_strides, axis.stop_strides);
     }
+    out.machine_stop.stops_all =
+        machine.can.format == CanFormat::classical || machine.can.format == CanFormat::fd;
+    out.machine_stop.reaction_strides =
+        strides(free_seconds(machine, machine.can.permit_samples.most));
     return out;
 }
 
@@ -429,21 +477,48 @@ LimitFact note_limits(LimitWatch& watch, const LimitRules& rules, const AxisSnap
     watch.position[stride % kLimitPoints] = snapshot.position;
     LimitFact out;
     for (std::uint32_t i = 0; i < rules.axis_count; ++i) {
-        LimitFact fact = judge_differences(watch, rules, i, snapshot.sample);
+        LimitFact fact = judge_resting_count(watch, rules, i, snapshot.sample);
+        fact = fact.kind == LimitKind::none ? judge_differences(watch, rules, i, snapshot.sample)
+                                            : fact;
         fact = fact.kind == LimitKind::none ? judge_ranges(watch, rules, history, i) : fact;
         fact = fact.kind == LimitKind::none ? follow_stop(watch, rules, i) : fact;
         out = out.kind == LimitKind::none ? fact : out;
         watch.believed[stride % kLimitPoints][i] = ranges_hold(watch, rules, history, i)
                                                        ? watch.ranges[i].range
                                                        : whole_range(rules.axes[i]);
+        note_resting_speed(watch, i);
     }
-    return out;
+    const LimitFact overdue =
+        follow_machine_stop(watch.machine_stop, rules.machine_stop, rest_of(watch, rules), stride);
+    return out.kind == LimitKind::none ? overdue : out;
 }
 
 bool ranges_hold(const LimitWatch& watch, const LimitRules& rules, const MotionHistory& history,
                  std::uint32_t axis) noexcept {
     return !watch.stops[axis].is_on && history.count > 0 &&
            history.sample[history.count - 1] >= watch.judged_from[axis] * rules.stride;
+}
+
+double blind_speed(const LimitRules& rules, std::uint32_t axis) noexcept {
+    const AxisLimitRules& of = rules.axes[axis];
+    const double a = of.limits.acceleration_max, jitter = of.errors.latch_jitter_s;
+    double least = INFINITY;
+    for (const std::uint32_t strides : kLimitStrides) {
+        const double nominal = nominal_s(rules, of, strides);
+        const double shortest = nominal * (1 - of.errors.period_share);
+        const double longest = nominal * (1 + of.errors.period_share);
+        const bool may_have_turned =
+            of.unlimited && !(of.limits.speed_max * longest + 2 * error_at_most(of) < 0.99 * kPi);
+        // A step that ends at v is at least v h - a h^2 / 2 long, and the next one is 0:
+        // v shortest > 1.5 a longest^2 + 4 (e + (v + a longest) jitter / 2).
+        const double room = shortest - rules.weights.acceleration * 0.5 * jitter;
+        const double hidden =
+            rules.weights.acceleration * (position_error(of) + 0.5 * a * longest * jitter);
+        if (!may_have_turned && room > 0) {
+            least = std::min(least, (1.5 * a * longest * longest + hidden) / room);
+        }
+    }
+    return least;
 }
 
 LimitFigures measure_limits(const LimitWatch& watch, const LimitRules& rules,

@@ -7,34 +7,18 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <type_traits>
 
+#include "core/certificate/limit_fact.hpp"
+#include "core/certificate/machine_stop.hpp"
 #include "core/certificate/motion_history.hpp"
 #include "core/certificate/stop_reach.hpp"
 #include "core/machine/axis_snapshot.hpp"
 #include "core/machine/machine.hpp"
 
 namespace axg {
-
-enum class LimitKind : std::uint8_t {
-    none = 0,
-    speed,
-    acceleration,
-    jerk,
-    speed_range,         // bounds of the speed contradict each other
-    acceleration_range,  // and those of the acceleration
-};
-[[nodiscard]] const char* to_text(LimitKind kind) noexcept;
-
-/// One limit that was broken.
-struct LimitFact {
-    LimitKind kind = LimitKind::none;
-    std::uint32_t axis = kNoIndex;
-    double measured = 0;  // the least value that explains the positions; of a range, the gap
-    double declared = 0;  // by the machine file; of a range, 0
-    std::uint64_t sample = 0;
-};
 
 /// How often the error of one position counts in a difference: 1+1, 1+2+1, 1+3+3+1.
 struct DifferenceWeights {
@@ -48,6 +32,8 @@ struct AxisLimitRules {
     std::uint64_t stop_strides = 0;  // a stop of the board's own lasts at most so long; 0: none may
                                      // be harder than free motion
     std::uint64_t ramp_strides = 0;  // and its speed may rise for so long
+    // No stop is harder, unless that of all axes is; infinite: not known.
+    double stopping_most = std::numeric_limits<double>::infinity();
 };
 
 /// The declared limits of a machine, and how well its samples are known.
@@ -56,6 +42,7 @@ struct LimitRules {
     std::uint32_t stride = 1;  // samples; points that are compared are multiples of it apart
     DifferenceWeights weights;
     bool stops_keep_path = false;  // axes may speed up, or turn round, within such a stop
+    MachineStopRules machine_stop;
     std::array<AxisLimitRules, kAxesMax> axes{};
 };
 
@@ -82,11 +69,19 @@ struct OwnStop {
     double moved = 0, last = 0;  // since then; the newest position
 };
 
+/// Since when the count of an axis has not changed, and its least speed then.
+struct RestingCount {
+    std::uint64_t since = 0;  // stride
+    double position = 0, speed = 0;
+};
+
 struct LimitWatch {
     std::uint64_t newest = 0;                          // stride, a sample's number / stride
     std::array<std::uint64_t, kLimitPoints> stride{};  // that a point is of, and 1; 0: none
     std::array<std::array<double, kAxesMax>, kLimitPoints> position{};
     std::array<OwnStop, kAxesMax> stops{};
+    MachineStop machine_stop;  // of all axes
+    std::array<RestingCount, kAxesMax> resting{};
     std::array<std::uint64_t, kAxesMax> judged_from{};  // stride at which the last stop was over
     std::array<RangeFinding, kAxesMax> ranges{};        // at the newest snapshot
     std::array<std::array<AxisRange, kAxesMax>, kLimitPoints> believed{};  // at each point
@@ -106,6 +101,10 @@ void forget_limits(LimitWatch& watch) noexcept;
 /// they do not, only the whole range of speed and acceleration is known.
 [[nodiscard]] bool ranges_hold(const LimitWatch& watch, const LimitRules& rules,
                                const MotionHistory& history, std::uint32_t axis) noexcept;
+
+/// Above this speed an axis whose count freezes is found; below it, it may have stopped within its
+/// acceleration. Infinite: never (an endless axis that may turn half round in two strides).
+[[nodiscard]] double blind_speed(const LimitRules& rules, std::uint32_t axis) noexcept;
 
 /// The least speed, acceleration and jerk that explain the newest points of an axis; 0 where the
 /// errors explain them alone.

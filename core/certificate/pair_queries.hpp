@@ -54,6 +54,7 @@ enum class SnapshotStatus : std::uint8_t {
     left_jog,     // another axis moved, or the one that may moved back, too fast, or is none
     left_travel,  // beyond what was proven of the travel, overrun included
     left_limits,  // an axis broke a declared limit (core/certificate/limit_evidence.hpp)
+    own_stop,     // an axis stops as only a stop of the board's own explains
 };
 
 struct PairQueries {

@@ -156,14 +156,19 @@ void StopCertificate::note(const AxisSnapshot& snapshot, bool is_first) noexcept
 void StopCertificate::watch_limits(bool is_first) noexcept {
     if (is_first) {
         forget_limits(limit_watch_);
-        broken_limit_ = {};
+        broken_limit_ = own_stop_ = {};
     }
     const LimitFact fact = note_limits(limit_watch_, limit_rules_, snapshot_, history_);
+    const bool is_stopping = limit_watch_.machine_stop.is_on;
+    if (is_stopping) {
+        own_stop_ = limit_watch_.machine_stop.cause;
+        is_limit_judged_ = false;
+    }
     if (fact.kind != LimitKind::none) {
         broken_limit_ = fact;
         is_limit_judged_ = false;
     } else if (is_limit_judged_ && snapshot_.sample % limit_rules_.stride == 0) {
-        broken_limit_ = {};
+        broken_limit_ = own_stop_ = {};
     }
 }
 
@@ -475,9 +480,10 @@ void StopCertificate::prove(const Engine& engine,
     if (status_ == SnapshotStatus::ok && (has_left_path_ || has_left_jog_)) {
         status_ = has_left_jog_ ? SnapshotStatus::left_jog : SnapshotStatus::left_path;
     }
-    if (status_ == SnapshotStatus::ok && broken_limit_.kind != LimitKind::none &&
-        !machine_->guard.reports_limits) {
-        status_ = SnapshotStatus::left_limits;
+    if (status_ == SnapshotStatus::ok && !machine_->guard.reports_limits) {
+        status_ = broken_limit_.kind != LimitKind::none ? SnapshotStatus::left_limits
+                  : own_stop_.kind != LimitKind::none   ? SnapshotStatus::own_stop
+                                                        : SnapshotStatus::ok;
     }
     if (status_ != SnapshotStatus::ok) {
         return;

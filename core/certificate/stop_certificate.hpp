@@ -63,7 +63,7 @@ struct StopCycle {
     bool begins_jog = false;  // what each pair keeps in it was found, and nothing is proven yet
     bool is_moving = false;   // the board says that its axes move
     std::span<const PairProof> proofs{};
-    LimitFact limit{};  // for left_limits
+    LimitFact limit{};  // for left_limits and own_stop
 };
 
 class StopCertificate {
@@ -114,7 +114,7 @@ class StopCertificate {
                 .begins_jog = begins_jog_,
                 .is_moving = snapshot_.mode == kModeMoving,
                 .proofs = proofs_.first(begins_jog_ ? 0 : proof_count_),
-                .limit = broken_limit_};
+                .limit = status_ == SnapshotStatus::own_stop ? own_stop_ : broken_limit_};
     }
     [[nodiscard]] const StagedWork& work() const noexcept { return work_; }
     [[nodiscard]] const CyclePlan& plan() const noexcept { return options_.plan; }
@@ -228,6 +228,7 @@ class StopCertificate {
     LimitRules limit_rules_;
     LimitWatch limit_watch_;
     LimitFact broken_limit_;       // until a cycle was judged by it and the window shows none
+    LimitFact own_stop_;           // likewise, of a stop of the board's own
     bool is_limit_judged_ = true;  // of several snapshots noted, the newest alone is judged
     SnapshotStatus status_ = SnapshotStatus::not_run;
     bool is_path_known_ = false;  // as far as a stop may need it

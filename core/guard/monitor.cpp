@@ -33,6 +33,7 @@ StopReason reason_of(SnapshotStatus status) noexcept {
            : status == SnapshotStatus::left_jog    ? StopReason::left_jog
            : status == SnapshotStatus::left_travel ? StopReason::left_travel
            : status == SnapshotStatus::left_limits ? StopReason::left_limits
+           : status == SnapshotStatus::own_stop    ? StopReason::own_stop
                                                    : StopReason::snapshot;
 }
 
@@ -100,7 +101,7 @@ void prove(const PairQueries& pair_queries, std::span<const QueryResult> results
 void prove(const StopCycle& cycle, CycleResult& result) noexcept {
     if (cycle.status != SnapshotStatus::ok) {
         result.reason = reason_of(cycle.status);
-        result.limit = cycle.status == SnapshotStatus::left_limits ? cycle.limit : LimitFact{};
+        result.limit = has_limit(result.reason) ? cycle.limit : LimitFact{};
         return;
     }
     result.known_answer_signature = cycle.known_answer_signature;
@@ -158,6 +159,8 @@ const char* to_text(StopReason reason) noexcept {
             return "left_limits";
         case StopReason::left_cap:
             return "left_cap";
+        case StopReason::own_stop:
+            return "own_stop";
     }
     return "unknown";
 }
@@ -195,7 +198,9 @@ CycleResult judge(const StopCycle& cycle, bool ready, bool is_armed) noexcept {
     // A machine that moves without a permit is told to stop, as soon as enough is known of it. A
     // jog is chosen by a person: one that is not proven is no motion yet.
     const bool is_loose = ready && cycle.is_settled && cycle.is_moving && !cycle.is_jog;
-    result.is_stop = !is_proven && (is_armed || is_loose || !may_wait);
+    // A board that stops by itself needs no stop, and no permit.
+    const bool is_stopping = result.reason == StopReason::own_stop;
+    result.is_stop = !is_proven && !is_stopping && (is_armed || is_loose || !may_wait);
     result.has_permit = ready && is_proven && !cycle.begins_jog;
     return result;
 }

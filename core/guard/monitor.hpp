@@ -31,8 +31,15 @@ enum class StopReason : std::uint8_t {
     left_travel,   // the axes are beyond the travel that the model was reduced for
     left_limits,   // an axis broke a declared limit: CycleResult::limit
     left_cap,      // the board does not keep a cap that it acknowledged: CycleResult::cap_fact
+    own_stop,      // the board stops by itself, or an axis only seems to: CycleResult::limit
 };
+inline constexpr StopReason kStopReasonLast = StopReason::own_stop;
 [[nodiscard]] const char* to_text(StopReason reason) noexcept;
+
+/// Whether CycleResult::limit says more.
+[[nodiscard]] constexpr bool has_limit(StopReason reason) noexcept {
+    return reason == StopReason::left_limits || reason == StopReason::own_stop;
+}
 
 /// How a board breaks its promise to keep a cap (docs/reference/board.md, "The cap").
 enum class CapBreak : std::uint8_t {
@@ -57,7 +64,7 @@ struct CycleResult {
     std::uint32_t not_proven = 0;   // pairs not proven this cycle, stopped or not
     std::uint16_t known_answer_signature = 0;
     std::uint8_t samples = 0;  // n of the permit: what was proven holds for one that is so long
-    LimitFact limit{};         // for left_limits
+    LimitFact limit{};         // for left_limits and own_stop
     bool is_jog = false;  // proven of one axis that moves one way: the permit is for that alone
     // Where the board keeps caps: the one that the permit orders, which was proven with it.
     bool has_cap = false, is_held = false;  // held: for so long that a person has to be told

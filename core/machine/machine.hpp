@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,6 +39,8 @@ struct Axis {
     double acceleration_max = 0;
     double jerk_max = 0;      // kNoJerkLimit: none is promised
     double stopping_min = 0;  // deceleration the board guarantees in a stop
+    // And the hardest of its drive; infinite: none is promised.
+    double stopping_most = std::numeric_limits<double>::infinity();
     // What a reported position may be off, beyond one count of the wire: from the true position at
     // its instant, and where the board reports what it commands, from that to where the axis is.
     double position_error = 0, following_error = 0;

@@ -83,6 +83,9 @@ char* write_body(const LiveNote& note, const Machine& machine, char* out, std::s
             const char* const what =
                 note.reason == StopReason::left_limits
                     ? "; an axis exceeded a declared limit, see the line left_limits"
+                : note.reason == StopReason::own_stop
+                    ? "; the board stops by itself, see the line own_stop: at rest, arm the board, "
+                      "then the guard"
                     : "; not proven at this position: jog away, or move the machine by hand";
             return fmt::format_to_n(end, size - static_cast<std::size_t>(end - out), "{}", what)
                 .out;

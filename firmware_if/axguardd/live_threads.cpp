@@ -36,6 +36,11 @@ constexpr int kLogPeriodMs = 20;
 constexpr int kStatusNice = 10;
 constexpr std::int64_t kLimitLogUs = 1'000'000;  // a broken limit makes a line a second at most
 
+struct BrokenLimit {
+    StopReason reason = StopReason::none;
+    LimitFact fact{};
+};
+
 struct Shared {
     const Machine& machine;
     GuardChain& chain;
@@ -51,11 +56,13 @@ struct Shared {
     std::atomic<std::uint32_t> backlog_drops{0};  // frames lost before any socket saw them
     std::atomic<std::uint32_t> period{0};         // of the guard: its cycle goes on
     std::atomic<bool> wants_view{false};
-    SpscQueue<LiveView, 2> views{};    // to the logger
-    StatusExchange status{};           // with the status thread
-    SpscQueue<LimitFact, 4> limits{};  // broken ones, to the logger
-    std::int64_t limit_due_us = 0;     // the logger's: no line about one before
-    ServiceNotify service{};           // the logger's, but at the end
+    SpscQueue<LiveView, 2> views{};      // to the logger
+    StatusExchange status{};             // with the status thread
+    SpscQueue<BrokenLimit, 4> limits{};  // broken ones, to the logger
+    // The logger's: no line of the same reason before.
+    StopReason limit_reason = StopReason::none;
+    std::int64_t limit_due_us = 0;
+    ServiceNotify service{};  // the logger's, but at the end
     LiveEnd end{};
 };
 
@@ -179,16 +186,17 @@ void* run_engine(void* argument) {
     Shared& shared = *static_cast<Shared*>(argument);
     prepare("engine thread", shared.options.engine_priority, shared.options.engine_cpu);
     const LiveEngine live{shared.machine, shared.chain};
-    bool was_broken = false;  // a limit
+    StopReason said = StopReason::none;  // of the last result, where a limit says more
     while (!shared.is_ending.load()) {
         await(shared.wake_engine);
         run_queries(live, shared.queues, [&](LiveResult live_result) {
             live_result.done_us = monotonic_us();
-            const bool is_broken = live_result.result.reason == StopReason::left_limits;
-            if (is_broken && !was_broken) {  // full: lines enough wait for the logger
-                [[maybe_unused]] const bool is_noted = shared.limits.push(live_result.result.limit);
+            const StopReason reason = live_result.result.reason;
+            if (has_limit(reason) && reason != said) {  // full: lines enough wait for the logger
+                [[maybe_unused]] const bool is_noted =
+                    shared.limits.push({reason, live_result.result.limit});
             }
-            was_broken = is_broken;
+            said = has_limit(reason) ? reason : StopReason::none;
             // Full only where the bus thread stands still; then nobody is there to use a result.
             [[maybe_unused]] const bool is_pushed = shared.queues.results.push(live_result);
             wake(shared.wake_bus);
@@ -219,18 +227,19 @@ std::uint32_t read_backlog_drops(int file) noexcept {
 /// What the note of the same stop has no room for.
 void write_limits(Shared& shared) {
     std::array<char, 400> line{};
-    LimitFact fact;
-    while (shared.limits.pop(fact)) {
+    BrokenLimit broken;
+    while (shared.limits.pop(broken)) {
         const std::int64_t now_us = monotonic_us();
-        if (now_us < shared.limit_due_us) {
+        if (broken.reason == shared.limit_reason && now_us < shared.limit_due_us) {
             continue;
         }
+        shared.limit_reason = broken.reason;
         shared.limit_due_us = now_us + kLimitLogUs;
         const auto head =
-            fmt::format_to_n(line.data(), line.size() - 1,
-                             "{}.{:06} left_limits: ", now_us / 1'000'000, now_us % 1'000'000);
+            fmt::format_to_n(line.data(), line.size() - 1, "{}.{:06} {}: ", now_us / 1'000'000,
+                             now_us % 1'000'000, to_text(broken.reason));
         std::size_t size = static_cast<std::size_t>(head.out - line.data());
-        size += format_limit(fact, shared.machine,
+        size += format_limit(broken.fact, broken.reason, shared.machine,
                              std::span(line).subspan(size, line.size() - 1 - size));
         line[size++] = '\n';
         [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, line.data(), size);

@@ -22,6 +22,53 @@ const char* word_of(LimitFigure figure) noexcept {
     return "speed";
 }
 
+char* write_fact(const LimitFact& fact, const Axis& axis, char* out, std::size_t size) noexcept {
+    const LimitFigure figure = figure_of(fact.kind);
+    const char* const unit = unit_of(axis, figure);
+    const double measured = in_axis_units(axis, fact.measured);
+    const double declared = in_axis_units(axis, fact.declared);
+    switch (fact.kind) {
+        case LimitKind::speed_range:
+        case LimitKind::acceleration_range:
+            return fmt::format_to_n(out, size,
+                                    "axis {}: contradictory bounds of its {} (by {:.6g} {})",
+                                    axis.name, word_of(figure), measured, unit)
+                .out;
+        case LimitKind::frozen_axis:
+            return fmt::format_to_n(out, size,
+                                    "axis {}: its position stands still, right after at least "
+                                    "{:.6g} {} (frozen_axis)",
+                                    axis.name, measured, unit)
+                .out;
+        case LimitKind::stopping:
+            return fmt::format_to_n(out, size,
+                                    "axis {}: braked at {:.6g} {}, its hardest stop is {:.6g} {} "
+                                    "(stopping_most)",
+                                    axis.name, measured, unit, declared, unit)
+                .out;
+        case LimitKind::none:
+        case LimitKind::speed:
+        case LimitKind::acceleration:
+        case LimitKind::jerk:
+            break;
+    }
+    return fmt::format_to_n(out, size, "axis {}: {} {:.6g} {}, declared {:.6g} {}", axis.name,
+                            word_of(figure), measured, unit, declared, unit)
+        .out;
+}
+
+const char* next_step(LimitKind kind, StopReason reason) noexcept {
+    if (reason == StopReason::own_stop) {
+        return "The board stops by itself: at rest, arm it anew. If no person stopped it, check "
+               "encoder and drive of this axis";
+    }
+    if (kind == LimitKind::frozen_axis || kind == LimitKind::stopping) {
+        return "The other axes went on: check encoder and drive of this axis";
+    }
+    return "Correct the limits of this axis in the machine file or in the control; axguard inspect "
+           "--limits proposes values";
+}
+
 }  // namespace
 
 LimitFigure figure_of(LimitKind kind) noexcept {
@@ -29,9 +76,11 @@ LimitFigure figure_of(LimitKind kind) noexcept {
         case LimitKind::none:
         case LimitKind::speed:
         case LimitKind::speed_range:
+        case LimitKind::frozen_axis:
             return LimitFigure::speed;
         case LimitKind::acceleration:
         case LimitKind::acceleration_range:
+        case LimitKind::stopping:
             return LimitFigure::acceleration;
         case LimitKind::jerk:
             return LimitFigure::jerk;
@@ -56,37 +105,22 @@ double in_axis_units(const Axis& axis, double value) noexcept {
     return axis.kind == AxisKind::rotary ? value * (180.0 / kPi) : value;
 }
 
-std::size_t format_limit(const LimitFact& fact, const Machine& machine,
+std::size_t format_limit(const LimitFact& fact, StopReason reason, const Machine& machine,
                          std::span<char> out) noexcept {
     if (fact.axis >= machine.axes.size()) {
         return 0;
     }
     const Axis& axis = machine.axes[fact.axis];
-    const LimitFigure figure = figure_of(fact.kind);
-    const double measured = in_axis_units(axis, fact.measured);
-    const bool is_range =
-        fact.kind == LimitKind::speed_range || fact.kind == LimitKind::acceleration_range;
-    char* const end =
-        is_range
-            ? fmt::format_to_n(out.data(), out.size(),
-                               "axis {}: contradictory bounds of its {} (by {:.6g} {})", axis.name,
-                               word_of(figure), measured, unit_of(axis, figure))
-                  .out
-            : fmt::format_to_n(out.data(), out.size(), "axis {}: {} {:.6g} {}, declared {:.6g} {}",
-                               axis.name, word_of(figure), measured, unit_of(axis, figure),
-                               in_axis_units(axis, fact.declared), unit_of(axis, figure))
-                  .out;
-    const char* const next =
-        ". Correct the limits of this axis in the machine file or in the control; axguard inspect "
-        "--limits proposes values";
+    char* const end = write_fact(fact, axis, out.data(), out.size());
     const std::size_t used = static_cast<std::size_t>(end - out.data());
-    const auto tail = fmt::format_to_n(end, out.size() - used, "{}", next);
+    const auto tail =
+        fmt::format_to_n(end, out.size() - used, ". {}", next_step(fact.kind, reason));
     return static_cast<std::size_t>(tail.out - out.data());
 }
 
-std::string limit_text(const LimitFact& fact, const Machine& machine) {
+std::string limit_text(const LimitFact& fact, StopReason reason, const Machine& machine) {
     std::array<char, 400> line{};
-    return {line.data(), format_limit(fact, machine, line)};
+    return {line.data(), format_limit(fact, reason, machine, line)};
 }
 
 }  // namespace axg

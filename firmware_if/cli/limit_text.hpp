@@ -7,7 +7,8 @@
 #include <span>
 #include <string>
 
-#include "core/certificate/limit_evidence.hpp"
+#include "core/certificate/limit_fact.hpp"
+#include "core/guard/monitor.hpp"
 #include "core/machine/machine.hpp"
 
 namespace axg {
@@ -24,8 +25,9 @@ enum class LimitFigure : std::uint8_t { speed, acceleration, jerk };
 /// "axis X: acceleration 20000 mm/s2, declared 4000 mm/s2. ...", with what to do next. Allocates
 /// nothing.
 /// @return  bytes written, no zero behind them
-[[nodiscard]] std::size_t format_limit(const LimitFact& fact, const Machine& machine,
-                                       std::span<char> out) noexcept;
-[[nodiscard]] std::string limit_text(const LimitFact& fact, const Machine& machine);
+[[nodiscard]] std::size_t format_limit(const LimitFact& fact, StopReason reason,
+                                       const Machine& machine, std::span<char> out) noexcept;
+[[nodiscard]] std::string limit_text(const LimitFact& fact, StopReason reason,
+                                     const Machine& machine);
 
 }  // namespace axg

@@ -270,7 +270,7 @@ void read(Reader& in, LiveResult& live_result) noexcept {
     live_result.result.has_permit = permitted != Permitted::nothing;
     live_result.result.is_jog = permitted == Permitted::jog;
     live_result.result.is_stop = in.boolean();
-    live_result.result.reason = in.tag(StopReason::left_cap);
+    live_result.result.reason = in.tag(kStopReasonLast);
     live_result.result.pair = in.word();
     live_result.result.not_proven = in.word();
     live_result.result.known_answer_signature = static_cast<std::uint16_t>(in.integer(2));
@@ -307,7 +307,7 @@ void read(Reader& in, LiveNote& note) noexcept {
     note.kind = in.tag(LiveNote::Kind::person);
     note.phase = in.tag(GuardPhase::armed);
     note.cause = in.tag(kGuardFaultLast);
-    note.reason = in.tag(StopReason::left_cap);
+    note.reason = in.tag(kStopReasonLast);
     note.pair = in.word();
     note.fault = in.tag(static_cast<ReceiverFault>(kReceiverFaults - 1));
     note.frame_id = in.word();

@@ -70,6 +70,7 @@ EmergencyCode code_of_verdict(StopReason reason) noexcept {
         case StopReason::left_travel:
         case StopReason::left_limits:
         case StopReason::left_cap:
+        case StopReason::own_stop:
         case StopReason::input:
         case StopReason::none:
             break;

@@ -51,8 +51,8 @@ void print_guard_stop(const DriveReport& report, Detail detail, std::FILE* words
         fmt::print(words, ", {}: {}", row.name, row.meaning);
     }
     fmt::print(words, ", at sample {}\n", stop.snapshot.sample);
-    if (stop.reason == StopReason::left_limits) {
-        fmt::print(words, "  {}\n", limit_text(stop.limit, report.machine));
+    if (has_limit(stop.reason)) {
+        fmt::print(words, "  {}\n", limit_text(stop.limit, stop.reason, report.machine));
     }
     if (stop.reason == StopReason::left_cap) {
         const std::uint32_t axis = stop.cap.axis;

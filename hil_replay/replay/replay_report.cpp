@@ -53,8 +53,8 @@ void print_stop(const ReplayReport& report, const StopEvent& stop, const char* t
                 std::FILE* words) {
     const Machine& machine = report.loaded.machine;
     fmt::print(words, "\n{}\n", first_line(report, stop, title));
-    if (stop.reason == StopReason::left_limits) {
-        fmt::print(words, "  {}\n", limit_text(stop.limit, machine));
+    if (has_limit(stop.reason)) {
+        fmt::print(words, "  {}\n", limit_text(stop.limit, stop.reason, machine));
     }
     fmt::print(words, "{}  {}\n", format_step_at(report.lines, stop.snapshot.arrived_us),
                axes_text(machine, stop.snapshot));

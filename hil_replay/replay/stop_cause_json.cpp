@@ -84,7 +84,7 @@ void add_stop_cause(const Machine& machine, StopReason reason, std::uint32_t pai
     if (reason == StopReason::input) {
         out["fault"] = fault_row(fault).name;
     }
-    if (reason == StopReason::left_limits) {
+    if (has_limit(reason)) {
         out["limit"] = limit_json(limit, machine);
     }
 }

@@ -18,7 +18,7 @@ namespace axg {
 /// Adds `pair`, `fault` and `limit` (units of the machine file), each where `reason` has one.
 /// @param pair   kNoIndex: it is about none
 /// @param fault  of reason input
-/// @param limit  of reason left_limits
+/// @param limit  of a reason that has one
 void add_stop_cause(const Machine& machine, StopReason reason, std::uint32_t pair,
                     ReceiverFault fault, const LimitFact& limit, nlohmann::ordered_json& out);
 

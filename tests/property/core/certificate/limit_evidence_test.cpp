@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Axes that keep every limit, with emergency stops in between, seen as badly as the machine file
 // allows (errors, rounding, jitter, a period that is off, lost samples), never show a broken limit;
-// axes that break one do. Wrong rules, made here, fail. AXG_COUNT: healthy samples.
+// axes that break one do; and without a stop of the board's own none is ever seen. Wrong rules,
+// made here, fail. AXG_COUNT: healthy samples.
 #include "core/certificate/limit_evidence.hpp"
 
 #include <gtest/gtest.h>
@@ -55,7 +56,9 @@ Case random_case(Random& random) {
 /// An axis that races at random within its limits, and stops at random harder than these.
 class HealthyAxis {
   public:
-    HealthyAxis(Random& random, const Case& c) : random_(random), case_(c) {
+    /// @param stops_itself  false: no stop is harder than free motion
+    HealthyAxis(Random& random, const Case& c, bool stops_itself)
+        : random_(random), case_(c), stops_itself_(stops_itself) {
         axis_.position = between(random, -100, 100);
     }
 
@@ -68,7 +71,7 @@ class HealthyAxis {
             }
             return;
         }
-        if (random_() % 400 == 0) {
+        if (stops_itself_ && random_() % 400 == 0) {
             begin_stop();
             return;
         }
@@ -138,6 +141,7 @@ class HealthyAxis {
 
     Random& random_;
     const Case& case_;
+    bool stops_itself_;
     AxisMotion axis_;
     Brake stop_{};        // jerk 0: none is on
     double delay_s_ = 0;  // of a stop that begins within this period
@@ -147,19 +151,23 @@ class HealthyAxis {
 
 struct Watched {
     std::uint64_t samples = 0, stops = 0, excused = 0;
+    std::uint64_t resting = 0;  // samples whose count is that of the sample before
+    bool has_machine_stop = false;
     LimitFact fact;
 };
 
 /// What the guard sees of a healthy axis, until it is said to have broken a limit.
-Watched watch_healthy(Random& random, const Case& c, const LimitRules& rules,
-                      std::uint64_t samples) {
+/// @param axis  begin_period(), position_at(), end_period(), stops()
+template <class Motion>
+Watched watch_healthy(Random& random, const Case& c, const LimitRules& rules, std::uint64_t samples,
+                      Motion axis) {
     const Axis& of = c.machine.axes[0];
     const double jitter_s = c.machine.guard.latch_jitter_s, count = c.count[0];
     const double bias = (random() & 1U) != 0 ? 1 : -1;
-    HealthyAxis axis(random, c);
     MotionHistory history;
     LimitWatch watch;
     Watched out;
+    double before = 0;
     for (std::uint64_t k = 0; k < samples; ++k) {
         axis.begin_period();
         const std::uint64_t dice = random();
@@ -179,6 +187,9 @@ Watched watch_healthy(Random& random, const Case& c, const LimitRules& rules,
             note_snapshot(history, snapshot, rules.stride);
             out.fact = note_limits(watch, rules, snapshot, history);
             out.excused += watch.stops[0].is_on ? 1 : 0;
+            out.has_machine_stop = out.has_machine_stop || watch.machine_stop.is_on;
+            out.resting += snapshot.position[0] == before ? 1 : 0;
+            before = snapshot.position[0];
         }
         axis.end_period();
         ++out.samples;
@@ -208,8 +219,8 @@ TEST(LimitEvidence, AHealthyAxisShowsNoBrokenLimit) {
     Watched all;
     while (all.samples < samples && !testing::Test::HasFailure()) {
         const Case c = random_case(random);
-        const Watched one =
-            watch_healthy(random, c, limit_rules(c.machine, c.count), kSamplesAnAxis);
+        const Watched one = watch_healthy(random, c, limit_rules(c.machine, c.count),
+                                          kSamplesAnAxis, HealthyAxis(random, c, true));
         expect_healthy(c, one);
         all.samples += one.samples;
         all.stops += one.stops;
@@ -225,6 +236,80 @@ TEST(LimitEvidence, AHealthyAxisShowsNoBrokenLimit) {
     }
 }
 
+/// An axis that sticks and slips, or turns round through its backlash: it rests for a while, and
+/// jumps on with its full acceleration and deceleration.
+class SlippingAxis {
+  public:
+    SlippingAxis(Random& random, const Case& c) : random_(random), case_(c) {
+        const Axis& of = c.machine.axes[0];
+        // From slips that no count shows to such as many counts do.
+        rise_s_ = std::sqrt(c.count[0] / of.acceleration_max) * std::exp2(between(random, -2, 4));
+        rise_s_ = std::min(rise_s_, 0.9 * of.speed_max / of.acceleration_max);
+        rest_s_ = rise_s_ * std::exp2(between(random, -3, 3));
+        way_ = 1;
+    }
+    void begin_period() {}
+    void end_period() { now_s_ += case_.period_s; }
+    [[nodiscard]] std::uint64_t stops() const { return 0; }
+    [[nodiscard]] double position_at(double seconds) {
+        const double a = case_.machine.axes[0].acceleration_max, t = now_s_ + seconds;
+        for (; t >= began_s_ + 2 * rise_s_ + rest_s_; began_s_ += 2 * rise_s_ + rest_s_) {
+            position_ += way_ * a * rise_s_ * rise_s_;
+            way_ = random_() % 8 == 0 ? -way_ : way_;
+        }
+        const double since = std::clamp(t - began_s_, 0.0, 2 * rise_s_);
+        const double rising = std::min(since, rise_s_), falling = since - rising;
+        return position_ +
+               way_ * a * (0.5 * rising * rising + rise_s_ * falling - 0.5 * falling * falling);
+    }
+
+  private:
+    Random& random_;
+    const Case& case_;
+    double rise_s_ = 0, rest_s_ = 0, way_ = 1, began_s_ = 0, now_s_ = 0, position_ = 0;
+};
+
+/// As random_case: slow, and with counts as coarse as a tenth of a millimetre.
+Case random_slow_case(Random& random) {
+    Case c = random_case(random);
+    Axis& axis = c.machine.axes[0];
+    c.count[0] *= std::exp2(between(random, 0, 8));
+    axis.speed_max *= std::exp2(between(random, -6, 0));
+    return c;
+}
+
+// Counts that rest at low speed, stick and slip, and turn round look like a frozen encoder.
+TEST(LimitEvidence, WithoutAStopOfTheBoardsOwnNoneIsSeen) {
+    Random random(printed_seed(20261130));
+    const auto samples = count_from_environment(1'000'000);
+    constexpr std::uint64_t kSamplesAnAxis = 5000;
+    std::uint64_t seen = 0, resting = 0, false_stops = 0;
+    for (std::uint64_t n = 0; seen < samples && !testing::Test::HasFailure(); ++n) {
+        Case c = random_slow_case(random);
+        const bool slips = n % 3 == 0;
+        if (slips) {  // its jerk has no limit
+            c.is_jerk_limited = c.machine.guard.free_jerk_limited = false;
+        }
+        const LimitRules rules = limit_rules(c.machine, c.count);
+        const Watched one =
+            slips ? watch_healthy(random, c, rules, kSamplesAnAxis, SlippingAxis(random, c))
+                  : watch_healthy(random, c, rules, kSamplesAnAxis, HealthyAxis(random, c, false));
+        expect_healthy(c, one);
+        EXPECT_FALSE(one.has_machine_stop)
+            << (slips ? "slips" : "races") << ", count " << c.count[0] << " v "
+            << c.machine.axes[0].speed_max << " a " << c.machine.axes[0].acceleration_max;
+        seen += one.samples;
+        resting += one.resting;
+        false_stops += one.has_machine_stop ? 1 : 0;
+    }
+    std::printf("%llu samples, %llu with a count that rests, %llu axes with a stop\n",
+                static_cast<unsigned long long>(seen), static_cast<unsigned long long>(resting),
+                static_cast<unsigned long long>(false_stops));
+    if (samples >= 100'000) {
+        EXPECT_GT(resting, seen / 10) << "too lively to tell anything";
+    }
+}
+
 /// Of 200 healthy axes, how many are said to have broken a limit by these rules.
 template <class Change>
 unsigned accused(Change change) {
@@ -234,7 +319,8 @@ unsigned accused(Change change) {
         const Case c = random_case(random);
         LimitRules rules = limit_rules(c.machine, c.count);
         change(rules);
-        count += watch_healthy(random, c, rules, 2000).fact.kind != LimitKind::none ? 1 : 0;
+        const Watched one = watch_healthy(random, c, rules, 2000, HealthyAxis(random, c, true));
+        count += one.fact.kind != LimitKind::none ? 1 : 0;
     }
     return count;
 }

@@ -38,7 +38,8 @@ TEST(MachineFaultsKeys, FaultsBeyondTwentyAreCounted) {
 TEST(MachineFaultsKeys, MisspeltKeyGetsTheNearestOne) {
     EXPECT_EQ(faults_of(with(kSmallMachine, "travel_mm:", "travel_nm:")),
               "m:4: axes.X.travel_nm: unknown key (expected one of kind, slot, travel_mm, "
-              "speed_mm_min, acceleration_mm_s2, jerk_mm_s3, stopping_mm_s2, position_error_mm, "
+              "speed_mm_min, acceleration_mm_s2, jerk_mm_s3, stopping_mm_s2, stopping_most_mm_s2, "
+              "position_error_mm, "
               "following_error_mm). Did you mean \"travel_mm\"?\n");
 }
 
@@ -101,10 +102,12 @@ TEST(MachineFaultsKeys, ListAsKeyIsRefused) {
 }
 
 TEST(MachineFaultsKeys, KeyOfTheOtherAxisKindIsRefused) {
-    EXPECT_EQ(faults_of(with(kSmallMachine, "travel_deg: [-110, 30]", "travel_mm: [-110, 30]")),
-              "m:6: axes.A.travel_mm: unknown key (expected one of kind, slot, travel_deg, "
-              "speed_deg_s, acceleration_deg_s2, jerk_deg_s3, stopping_deg_s2, position_error_deg, "
-              "following_error_deg). Did you mean \"travel_deg\"?\n");
+    EXPECT_EQ(
+        faults_of(with(kSmallMachine, "travel_deg: [-110, 30]", "travel_mm: [-110, 30]")),
+        "m:6: axes.A.travel_mm: unknown key (expected one of kind, slot, travel_deg, "
+        "speed_deg_s, acceleration_deg_s2, jerk_deg_s3, stopping_deg_s2, stopping_most_deg_s2, "
+        "position_error_deg, "
+        "following_error_deg). Did you mean \"travel_deg\"?\n");
 }
 
 TEST(MachineFaultsForms, AliasAndAnchorAreRefused) {

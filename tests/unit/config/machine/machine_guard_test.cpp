@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "config/machine/effective_text.hpp"
@@ -407,6 +408,21 @@ TEST(MachineGuard, ACapMakesTheLeastPermitLongerWhereTheFileStatesNone) {
               4);
 }
 
+TEST(MachineGuard, TheHardestStopIsNoSofterThanTheOthers) {
+    const auto with_most = [](const std::string& value) {
+        return with(kSmallMachine, "stopping_mm_s2: 1500,",
+                    "stopping_mm_s2: 1500, stopping_most_mm_s2: " + value + ",");
+    };
+    Machine machine;
+    ASSERT_TRUE(parse_machine(kSmallMachine, "m", machine).empty());
+    EXPECT_EQ(machine.axes[0].stopping_most, std::numeric_limits<double>::infinity());
+    ASSERT_TRUE(parse_machine(with_most("20000"), "m", machine).empty());
+    EXPECT_EQ(machine.axes[0].stopping_most, 20000);
+    const std::string faults = faults_of(with_most("1600"));
+    EXPECT_NE(faults.find("axes.X.stopping_most_mm_s2"), std::string::npos) << faults;
+    EXPECT_NE(faults.find("the larger of stopping and acceleration"), std::string::npos) << faults;
+}
+
 TEST(MachineGuard, WordsOfTheFaults) {
     EXPECT_EQ(
         faults_of(with(kSmallMachine, "free_jerk: any", "free_jerk: none")),
@@ -420,7 +436,8 @@ TEST(MachineGuard, WordsOfTheFaults) {
     EXPECT_EQ(faults_of(with(kSmallMachine, "stopping_mm_s2: 1500,",
                              "stopping_mm_s2: 1500, position_error_deg: 1,")),
               "m:5: axes.X.position_error_deg: unknown key (expected one of kind, slot, travel_mm, "
-              "speed_mm_min, acceleration_mm_s2, jerk_mm_s3, stopping_mm_s2, position_error_mm, "
+              "speed_mm_min, acceleration_mm_s2, jerk_mm_s3, stopping_mm_s2, stopping_most_mm_s2, "
+              "position_error_mm, "
               "following_error_mm). Did you mean \"position_error_mm\"?\n");
 }
 

@@ -374,9 +374,145 @@ TEST(LimitEvidence, WithoutALimitOfJerkAStopLastsAsLongAsBrakingAlone) {
     EXPECT_LE(board.rules.axes[0].ramp_strides, 2U);
 }
 
+/// Two axes: X as in one_axis, and Y as it.
+struct TwoAxes {
+    Machine machine = one_axis();
+    LimitRules rules;
+    LimitWatch watch;
+    MotionHistory history;
+    LimitFact fact;
+    std::uint64_t found = 0, began = 0, ended = 0;  // samples; 0: never
+
+    TwoAxes() {
+        machine.axes.push_back(machine.axes[0]);
+        machine.axes[1].name = "Y";
+    }
+    void watch_until(std::uint64_t end, const std::function<double(double)>& x,
+                     const std::function<double(double)>& y) {
+        constexpr std::array<double, 2> kCount{0, 0};
+        rules = limit_rules(machine, kCount);
+        for (std::uint64_t k = 0; k < end && fact.kind == LimitKind::none; ++k) {
+            AxisSnapshot snapshot;
+            snapshot.sample = k;
+            snapshot.axis_count = 2;
+            const double t = static_cast<double>(k) * 1e-3;
+            snapshot.position[0] = x(t);
+            snapshot.position[1] = y(t);
+            note_snapshot(history, snapshot, rules.stride);
+            fact = note_limits(watch, rules, snapshot, history);
+            found = fact.kind == LimitKind::none ? 0 : k;
+            began = began == 0 && watch.machine_stop.is_on ? k : began;
+            ended = began != 0 && ended == 0 && !watch.machine_stop.is_on ? k : ended;
+        }
+    }
+    [[nodiscard]] std::uint64_t longest_stop() const {
+        return rules.machine_stop.braking_strides + rules.machine_stop.reaction_strides;
+    }
+};
+
+double frozen_at(double t, double speed, double freezes_s) {
+    return speed * std::min(t, freezes_s);
+}
+
+// The count of X repeats while Y goes on: a stop of the board's own at once, and a broken limit as
+// soon as the slowest axis would have come to rest.
+TEST(LimitEvidence, OneFrozenAxisIsNoStopOfTheBoard) {
+    TwoAxes axes;
+    axes.watch_until(
+        1000, [](double t) { return frozen_at(t, 100, 0.1); }, [](double t) { return 50 * t; });
+    EXPECT_EQ(axes.began, 101U) << "at the first count that is repeated";
+    EXPECT_EQ(axes.fact.kind, LimitKind::frozen_axis);
+    EXPECT_EQ(axes.fact.axis, 0U);
+    EXPECT_NEAR(axes.fact.measured, 95, 5);
+    EXPECT_EQ(axes.found, axes.began + axes.longest_stop() + 17);
+    EXPECT_STREQ(to_text(axes.fact.kind), "frozen_axis");
+}
+
+// A board that promises nothing of its stops as a whole: each axis may stop by itself.
+TEST(LimitEvidence, WithoutABoardsContractOneAxisMayStopByItself) {
+    TwoAxes axes;
+    axes.machine.can.format = CanFormat::cia402;
+    axes.watch_until(
+        1000, [](double t) { return frozen_at(t, 100, 0.1); }, [](double t) { return 50 * t; });
+    EXPECT_EQ(axes.fact.kind, LimitKind::none);
+    EXPECT_EQ(axes.began, 101U);
+    EXPECT_GT(axes.ended, 101U);
+}
+
+// Both commands freeze, as in an emergency stop of LinuxCNC: one brakes harder than it can, both
+// rest.
+TEST(LimitEvidence, AllAxesMayStopAtOnce) {
+    TwoAxes axes;
+    axes.machine.axes[0].stopping_most = axes.machine.axes[1].stopping_most = 8000;
+    axes.watch_until(
+        1000, [](double t) { return frozen_at(t, 100, 0.1); },
+        [](double t) { return frozen_at(t, 50, 0.11); });
+    EXPECT_EQ(axes.fact.kind, LimitKind::none);
+    EXPECT_EQ(axes.began, 101U);
+    EXPECT_NEAR(static_cast<double>(axes.ended), 110 + 12, 2);
+}
+
+// Harder than the drive can brake, and another axis brakes as drives do: told without waiting for
+// the softest stop.
+TEST(LimitEvidence, AHarderStopThanAnyOfTheDriveIsNone) {
+    const auto soft = [](double t) {
+        AxisMotion axis{.speed = 300};
+        const double free = std::min(t, 0.1);
+        axis = moved_on(axis, free);
+        brake(axis, {.deceleration = 3500, .jerk = 1e7}, t - free);
+        return axis.position;
+    };
+    for (const double most : {8000.0, 1e9}) {
+        TwoAxes axes;
+        axes.machine.axes[0].stopping_most = most;
+        axes.watch_until(
+            1000, [](double t) { return frozen_at(t, 100, 0.1); }, soft);
+        EXPECT_EQ(axes.fact.kind, most < 1e9 ? LimitKind::stopping : LimitKind::none);
+        if (most < 1e9) {
+            EXPECT_EQ(axes.found, axes.began + axes.rules.machine_stop.reaction_strides + 17);
+            EXPECT_EQ(axes.fact.declared, 8000);
+            EXPECT_STREQ(to_text(axes.fact.kind), "stopping");
+        }
+    }
+}
+
+// Above the speed that check prints every freeze is found within the longest strides.
+TEST(LimitEvidence, AFreezeAboveTheBlindSpeedIsFound) {
+    TwoAxes tried;
+    tried.watch_until(
+        1, [](double) { return 0.0; }, [](double) { return 0.0; });
+    const double blind = blind_speed(tried.rules, 0);
+    EXPECT_GT(blind, 4);
+    EXPECT_LT(blind, 20);
+    for (int i = 0; i < 50; ++i) {
+        const double speed = blind * (1.01 + 0.5 * i), freezes_s = 0.1 + i * 17e-5;
+        TwoAxes axes;
+        axes.watch_until(
+            200, [=](double t) { return frozen_at(t, speed, freezes_s); },
+            [](double t) { return 50 * t; });
+        EXPECT_GE(axes.began, 100U) << speed;
+        EXPECT_LE(axes.began, 100U + 18U) << speed;
+    }
+    TwoAxes slow;  // it may have stopped within its acceleration
+    slow.watch_until(
+        200, [=](double t) { return frozen_at(t, 0.5 * std::sqrt(4000 * 4 * kErrorMm), 0.1); },
+        [](double t) { return 50 * t; });
+    EXPECT_EQ(slow.began, 0U);
+}
+
+TEST(LimitEvidence, AnEndlessAxisThatMayTurnHalfRoundIsNeverSeenToFreeze) {
+    Machine machine = one_axis();
+    machine.axes[0].unlimited = true;
+    machine.axes[0].kind = AxisKind::rotary;
+    machine.axes[0].speed_max = 4000;
+    constexpr std::array<double, 1> kCount{0};
+    EXPECT_EQ(blind_speed(limit_rules(machine, kCount), 0), INFINITY);
+}
+
 TEST(LimitEvidence, EachKindHasAName) {
-    for (const LimitKind kind : {LimitKind::none, LimitKind::speed, LimitKind::acceleration,
-                                 LimitKind::jerk, LimitKind::speed_range}) {
+    for (const LimitKind kind :
+         {LimitKind::none, LimitKind::speed, LimitKind::acceleration, LimitKind::jerk,
+          LimitKind::speed_range, LimitKind::frozen_axis, LimitKind::stopping}) {
         EXPECT_STRNE(to_text(kind), to_text(LimitKind::acceleration_range));
     }
 }
