@@ -65,6 +65,8 @@ GuardInput classify(const Guard& guard, const GuardEvent& event,
             return GuardInput::restart;
         case GuardEventKind::kill:
             return GuardInput::kill;
+        case GuardEventKind::own_stop:
+            return GuardInput::own_stop;
     }
     return GuardInput::fault_stop;
 }
@@ -228,7 +230,8 @@ GuardEvent guard_event_of(const CycleResult& cycle, std::uint32_t period,
     if (cycle.is_stop) {
         return {.kind = GuardEventKind::fault, .fault = GuardFault::verdict};
     }
-    return {.kind = GuardEventKind::snapshot,
+    return {.kind = cycle.reason == StopReason::own_stop ? GuardEventKind::own_stop
+                                                         : GuardEventKind::snapshot,
             .is_proven = cycle.has_permit && cycle.reason == StopReason::none,
             .period = period,
             .age_us = age_us,

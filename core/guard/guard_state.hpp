@@ -66,6 +66,7 @@ enum class GuardEventKind : std::uint8_t {
     arm,          // a person wants to go on
     restart,      // a new process begins with what the old one has stored
     kill,         // the process ends
+    own_stop,     // the board stops by itself: no permit until a person arms anew
 };
 
 struct GuardEvent {

@@ -34,8 +34,9 @@ enum class GuardInput : std::uint8_t {
     arm,
     restart,
     kill,
+    own_stop,  // a snapshot in a stop of the board's own
 };
-inline constexpr std::uint32_t kGuardInputs = 21;
+inline constexpr std::uint32_t kGuardInputs = 22;
 
 enum class GuardAction : std::uint8_t {
     none = 0,
@@ -111,6 +112,9 @@ inline constexpr auto kGuardRows = [] {
         {In::board_moves, stopped, stopped, withdraw},
         {In::reset, stopped, init, begin},
         {In::arm, ready, armed, none},
+        {In::own_stop, selftest, selftest, wait},
+        {In::own_stop, ready, selftest, wait},
+        {In::own_stop, armed, selftest, wait},
 
         {In::restart, stopped, stopped, stop},
         {In::restart, init, init, begin},

@@ -65,7 +65,7 @@ bool axg_operator_decode_status(const axg_board_can_frame* frame, axg_board_axis
     const bool is_good = axg_operator_is_sealed(frame, ids) &&
                          (data[2] <= AXG_OPERATOR_PHASE_MAX) &&
                          ((data[3] == 0U) || axg_operator_is_action(data[3])) &&
-                         (data[4] <= (uint8_t)AXG_OPERATOR_REFUSED_TOO_LATE);
+                         (data[4] <= (uint8_t)AXG_OPERATOR_REFUSED_BOARD);
     if (is_good) {
         out->phase = data[2];
         out->action = (axg_operator_action)data[3];

@@ -35,11 +35,12 @@ typedef struct axg_operator_message {
 
 typedef enum axg_operator_refusal {
     AXG_OPERATOR_REFUSED_NOTHING = 0,
-    AXG_OPERATOR_REFUSED_MOVES,    // an axis moves, or is not proven to be at rest
-    AXG_OPERATOR_REFUSED_CAUSE,    // the cause of the stop is still present
-    AXG_OPERATOR_REFUSED_PHASE,    // nothing to reset or to arm in this phase
-    AXG_OPERATOR_REFUSED_NONCE,    // wrong nonce in the confirmation
-    AXG_OPERATOR_REFUSED_TOO_LATE  // confirmed after 5 s
+    AXG_OPERATOR_REFUSED_MOVES,     // an axis moves, or is not proven to be at rest
+    AXG_OPERATOR_REFUSED_CAUSE,     // the cause of the stop is still present
+    AXG_OPERATOR_REFUSED_PHASE,     // nothing to reset or to arm in this phase
+    AXG_OPERATOR_REFUSED_NONCE,     // wrong nonce in the confirmation
+    AXG_OPERATOR_REFUSED_TOO_LATE,  // confirmed after 5 s
+    AXG_OPERATOR_REFUSED_BOARD      // the board stopped by itself: arm the board first
 } axg_operator_refusal;
 
 // Status of the guard, every 100 ms and at each change.

@@ -77,13 +77,22 @@ void GuardChain::evaluate_in_turn(const EvaluationClock& clock) {
     }
 }
 
+/// Permits end with a stop of the board's own, but a board that does not come to rest is stopped.
+bool GuardChain::owes_stop(bool is_armed) noexcept {
+    const SnapshotStatus status = stop_certificate_->cycle().status;
+    has_own_stop_ = status == SnapshotStatus::own_stop
+                        ? has_own_stop_ || is_armed
+                        : has_own_stop_ && status == SnapshotStatus::left_limits;
+    return is_armed || has_own_stop_;
+}
+
 CycleResult GuardChain::decide(bool ready, bool is_armed) noexcept {
     if (stop_certificate_ != nullptr) {
         stop_certificate_->keep();
     }
     CycleResult result = stop_certificate_ == nullptr
                              ? judge(pair_queries_, results(), containment_results(), ready)
-                             : judge(stop_certificate_->cycle(), ready, is_armed);
+                             : judge(stop_certificate_->cycle(), ready, owes_stop(is_armed));
     if (stop_certificate_ == nullptr) {
         result.samples = machine_.can.permit_samples.least;
     }

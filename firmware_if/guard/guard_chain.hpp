@@ -105,6 +105,7 @@ class GuardChain {
   private:
     void note_caps(const CapFacts& caps, bool is_first) noexcept;
     void keep_awake() noexcept;
+    [[nodiscard]] bool owes_stop(bool is_armed) noexcept;
     void evaluate_together() noexcept;
     void evaluate_in_turn(const EvaluationClock& clock);
     [[nodiscard]] bool is_queried() const noexcept {
@@ -118,6 +119,7 @@ class GuardChain {
     SpeedAdvisory* speed_advisory_;
     MarginAdvisory* margin_advisory_;
     CapGuard cap_guard_;
+    bool has_own_stop_ = false;  // begun under permits, and not over
     AxisSnapshot snapshot_;
     PairQueries pair_queries_;
     std::array<QueryResult, kQueriesMax> results_{};

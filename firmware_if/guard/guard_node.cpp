@@ -204,6 +204,9 @@ void GuardNode::on_result(const LiveResult& live_result, std::int64_t now_us) no
         event.is_proven = false;
         withheld_ = {.why = Why::session};
     }
+    if (event.kind == GuardEventKind::own_stop && guard_.phase == GuardPhase::armed) {
+        note_own_stop();
+    }
     if (has_session(machine_.can)) {
         hints_ = hints_of(live_result.result, live_result.sync_counter);
         has_hints_ = true;

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "core/guard/guard_state.hpp"
@@ -136,6 +137,10 @@ class GuardNode {
     [[nodiscard]] bool stands(std::int64_t now_us) const noexcept {
         return standstill_.stands(now_us);
     }
+    /// Whether a person's arming would have an effect now.
+    [[nodiscard]] bool may_arm(std::int64_t now_us) noexcept {
+        return hindrance_of(OperatorAction::arm, now_us) == OperatorRefusal::none;
+    }
     /// The board has sent the session of the newest sample.
     [[nodiscard]] bool has_said_session() const noexcept {
         return receiver_.session_of(receiver_.newest_sync_counter()).has_value();
@@ -159,6 +164,9 @@ class GuardNode {
     [[nodiscard]] bool keeps_cap() const noexcept { return machine_.guard.cap != CapPromise::none; }
     void note_held(const CycleResult& result, std::int64_t now_us) noexcept;
     [[nodiscard]] bool lacks_session(const LiveResult& live_result, std::int64_t now_us) noexcept;
+    [[nodiscard]] std::optional<std::uint32_t> newest_nonce() const noexcept;
+    void note_own_stop() noexcept;
+    [[nodiscard]] bool waits_for_board() const noexcept;
     void read_frames(std::int64_t now_us) noexcept;
     void on_arrival(const CanArrival& arrival, std::int64_t now_us) noexcept;
     void on_foreign(const CanFrame& frame, const char* words, GuardFault fault,
@@ -236,6 +244,13 @@ class GuardNode {
     PulseLine* line_;
     bool line_level_ = false;
     bool supposes_arming_;
+    // The board stopped by itself under permits, and nobody armed the guard since. While its nonce
+    // is that of then, nobody armed the board either.
+    struct SeenOwnStop {
+        bool is_on = false;
+        std::optional<std::uint32_t> nonce;
+    };
+    SeenOwnStop own_stop_;
 };
 
 }  // namespace axg

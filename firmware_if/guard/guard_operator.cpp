@@ -24,6 +24,9 @@ const char* words_of(OperatorAction action, OperatorRefusal refusal) noexcept {
                           : "reset: confirmed with a wrong nonce";
         case OperatorRefusal::too_late:
             return is_arm ? "arm: confirmed later than 5 s" : "reset: confirmed later than 5 s";
+        case OperatorRefusal::board:
+            return "arm: the board stopped by itself and has the nonce of then: arm the board "
+                   "first";
         case OperatorRefusal::none:
             break;
     }
@@ -42,6 +45,7 @@ void GuardNode::arm(std::int64_t now_us) noexcept {
     wire_.add(LiveCall{.kind = LiveCall::Kind::arm});
     const OperatorRefusal refusal = hindrance_of(OperatorAction::arm, now_us);
     if (refusal == OperatorRefusal::none) {
+        own_stop_.is_on = false;
         on({.kind = GuardEventKind::arm}, now_us);
     } else if (guard_.phase != GuardPhase::armed) {
         note({.kind = LiveNote::Kind::refused, .words = words_of(OperatorAction::arm, refusal)},
@@ -64,9 +68,11 @@ void GuardNode::reset(std::int64_t now_us) noexcept {
 /// Why that action would have no effect now; none: it would.
 OperatorRefusal GuardNode::hindrance_of(OperatorAction action, std::int64_t now_us) noexcept {
     if (action == OperatorAction::arm) {
-        return guard_.phase != GuardPhase::ready                  ? OperatorRefusal::phase
-               : !supposes_arming_ && !standstill_.stands(now_us) ? OperatorRefusal::moves
-                                                                  : OperatorRefusal::none;
+        const bool may_move = supposes_arming_ && !own_stop_.is_on;
+        return guard_.phase != GuardPhase::ready          ? OperatorRefusal::phase
+               : !may_move && !standstill_.stands(now_us) ? OperatorRefusal::moves
+               : waits_for_board()                        ? OperatorRefusal::board
+                                                          : OperatorRefusal::none;
     }
     if (guard_.phase != GuardPhase::stopped) {
         return OperatorRefusal::phase;
@@ -108,6 +114,7 @@ void GuardNode::on_operator(const CanFrame& frame, std::int64_t now_us) noexcept
                   .frame_id = frame.id,
                   .words = is_arm ? "an operator arms" : "an operator resets"},
                  now_us);
+            own_stop_.is_on = own_stop_.is_on && !is_arm;
             on({.kind = is_arm ? GuardEventKind::arm : GuardEventKind::reset_edge}, now_us);
             break;
         }

@@ -61,6 +61,23 @@ void GuardNode::note_held(const CycleResult& result, std::int64_t now_us) noexce
     is_held_ = result.is_held;
 }
 
+std::optional<std::uint32_t> GuardNode::newest_nonce() const noexcept {
+    const std::optional<SampleSession> session =
+        receiver_.session_of(receiver_.newest_sync_counter());
+    return session ? std::optional(session->nonce) : std::nullopt;
+}
+
+/// A board that stops by itself latches: a person arms it, which draws a new nonce. Until then
+/// nobody has looked at what may be an encoder that froze.
+void GuardNode::note_own_stop() noexcept {
+    own_stop_ = {.is_on = true, .nonce = newest_nonce()};
+}
+
+bool GuardNode::waits_for_board() const noexcept {
+    const std::optional<std::uint32_t> nonce = newest_nonce();
+    return own_stop_.is_on && has_session(machine_.can) && (!nonce || nonce == own_stop_.nonce);
+}
+
 /// A permit of version 2 answers for the board's nonce and the sample's lap: without them it would
 /// be refused. Said once a second.
 bool GuardNode::lacks_session(const LiveResult& live_result, std::int64_t now_us) noexcept {

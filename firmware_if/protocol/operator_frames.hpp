@@ -23,8 +23,9 @@ enum class OperatorRefusal : std::uint8_t {
     phase,     // nothing to reset or to arm in this phase
     nonce,     // a confirmation of another request, or of none
     too_late,  // confirmed more than 5 s after the request
+    board,     // the board stopped by itself, and nobody armed it since
 };
-inline constexpr std::uint32_t kOperatorRefusals = 6;
+inline constexpr std::uint32_t kOperatorRefusals = 7;
 
 struct OperatorMessage {
     OperatorAction action = OperatorAction::none;

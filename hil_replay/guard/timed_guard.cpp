@@ -140,7 +140,7 @@ bool TimedGuard::agree(const CanFrame& frame) {
 }
 
 void TimedGuard::arm() {
-    if (guard_->guard().phase == GuardPhase::ready && now_us_ >= options_.arm_from_us) {
+    if (guard_->may_arm(now_us_) && now_us_ >= options_.arm_from_us) {
         guard_->arm(now_us_);
         was_armed_ = true;
     }

@@ -163,6 +163,8 @@ def act(event):
         set_pin("axguard-stop.simulation-wait-us", 0)
         time.sleep(0.6)
         os.kill(guard, signal.SIGCONT)
+    elif event["do"] == "estop":  # LinuxCNC's own: the command freezes
+        COMMAND.state(linuxcnc.STATE_ESTOP)
     elif event["do"] == "inhibit":
         subprocess.run(["halcmd", "sets", "inhibit", "1"], check=True)
     elif event["do"] == "tool_change":  # in motion, and announced by nobody

@@ -84,6 +84,7 @@ def scenarios(source):
             {"do": "kill", "pin": "axguard-stop.2.position", "below": -60}]}),
         "late": (SWING, True, {"events": [{"do": "late", "after_s": 1.5}]}),
         "feed": (SWING, False, {"events": feed}),
+        "estop": (SWING, True, {"events": [{"do": "estop", "after_s": 1.2}], "again": True}),
         "unguarded": (COLLIDE, False, {}),
         "jog": (COLLIDE, True, {"jogs": [order for order, _ in JOGS], "after": AFTER}),
         "tool": (TOOLS, False, {}),
@@ -102,8 +103,8 @@ def scenarios(source):
 
 
 # At most three minutes; the others run by hand, by name.
-USUAL = ["clean", "collide", "kill_approach", "late", "unguarded", "jog", "tool", "tool_collide",
-         "tool_unknown", "xyzac_clean"]
+USUAL = ["clean", "collide", "kill_approach", "late", "estop", "unguarded", "jog", "tool",
+         "tool_collide", "tool_unknown", "xyzac_clean"]
 
 
 def tip_error(rows, machine):
@@ -196,7 +197,7 @@ def check(name, is_stopped, said, rows, overruns, judged, facts):
         faults.append(f"{name}: contact: {judged['stops'][0]}")
     if name == "tool" and {row[10] for row in rows if row[6]} != {1, 2}:
         faults.append("tool: the samples had other tools than the program")
-    if is_stopped != bool(facts):
+    if (is_stopped and name != "estop") != bool(facts):
         faults.append(f"{name}: {len(facts)} ramps in the record")
     for ramp in facts:
         if ramp["periods"] > ramp["promised"]:
@@ -219,8 +220,11 @@ def check(name, is_stopped, said, rows, overruns, judged, facts):
         faults.append(f"{name}: the stop has another cause than the change of the tool")
     if name == "jog":
         faults += check_jogs(said)
-    if name == "collide" and not said.get("on_again"):
-        faults.append("collide: not armed and switched on again after the stop")
+    # A stop of LinuxCNC's own ends the permits, and is none of the guard.
+    if name == "estop" and said["pins"]["axguard.phase"] not in ("2", "3"):
+        faults.append(f"estop: the guard stopped, or still permits: {said['pins']}")
+    if name in ("collide", "estop") and not said.get("on_again"):
+        faults.append(f"{name}: not armed and switched on again after the stop")
     return faults
 
 

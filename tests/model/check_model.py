@@ -18,7 +18,7 @@ MODEL = pathlib.Path(__file__).resolve().parent
 PROPERTIES = range(1, 9)
 # What is broken, and the property that must find it: the defines of guard.pml.
 MISTAKES = [
-    ("LATE_COUNTS", 1), ("OLD_COUNTS", 1), ("TIMER_PERMITS", 1),
+    ("LATE_COUNTS", 1), ("OLD_COUNTS", 1), ("TIMER_PERMITS", 1), ("OWN_STOP_STAYS", 1),
     ("FAULT_STAYS", 2), ("TX_FAIL_STAYS", 2),
     ("FAULTY_RESET", 3), ("RESET_ARMS", 3), ("ARM_RESETS", 3),
     ("RESTART_UNLATCHES", 4), ("KILL_STAYS", 4),

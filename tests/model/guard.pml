@@ -33,6 +33,7 @@
 #define DISTURBED_IS_GOOD 16
 #define MISSED_IS_NOTHING 17
 #define CONFIRMED_FOR_EVER 18
+#define OWN_STOP_STAYS 19
 
 /* Events. */
 #define K_nothing 0
@@ -50,6 +51,7 @@
 #define K_restart 12
 #define K_kill 13
 #define K_board_moves 14
+#define K_own_stop 16
 
 /* The guard: struct Guard without cause and period, of which no rule reads more than "this one". */
 byte phase = P_init;
@@ -109,6 +111,7 @@ inline classify() {
     :: kind == K_tested -> input = I_tested
     :: kind == K_restart -> input = I_restart
     :: kind == K_kill -> input = I_kill
+    :: kind == K_own_stop -> input = I_own_stop
     fi
 }
 
@@ -164,6 +167,8 @@ inline break_table() {
         next = P_init; action = A_begin
     :: BREAK == KILL_STAYS && input == I_kill && phase == P_armed ->
         next = P_armed; action = A_none
+    :: BREAK == OWN_STOP_STAYS && input == I_own_stop && phase == P_armed ->
+        next = P_armed; action = A_none
     :: BREAK == TX_FAIL_UNLATCHES && input == I_tx_fail && phase == P_stopped ->
         next = P_init; action = A_begin
     :: BREAK == STOP_ONCE && action == A_repeat ->
@@ -215,6 +220,7 @@ inline print_event() {
     :: kind == K_tested -> printf("tested")
     :: kind == K_restart -> printf("restart")
     :: kind == K_kill -> printf("kill")
+    :: kind == K_own_stop -> printf("own_stop")
     fi;
     printf(" %d %d %d %d : ", event_proven, event_late, event_age, event_samples)
 }
@@ -243,6 +249,7 @@ active proctype world() {
         :: kind = K_tested
         :: kind = K_restart
         :: kind = K_kill
+        :: kind = K_own_stop
         fi;
         d_step {
             printf("STEP "); print_state(); print_event();

@@ -29,6 +29,7 @@
 #define I_arm 18
 #define I_restart 19
 #define I_kill 20
+#define I_own_stop 21
 
 #define A_none 0
 #define A_begin 1
@@ -133,6 +134,12 @@ inline look_up(input, phase) {
         next = P_init; action = A_begin
     :: input == I_arm && phase == P_ready ->
         next = P_armed; action = A_none
+    :: input == I_own_stop && phase == P_selftest ->
+        next = P_selftest; action = A_wait
+    :: input == I_own_stop && phase == P_ready ->
+        next = P_selftest; action = A_wait
+    :: input == I_own_stop && phase == P_armed ->
+        next = P_selftest; action = A_wait
     :: input == I_restart && phase == P_stopped ->
         next = P_stopped; action = A_stop
     :: input == I_restart && phase == P_init ->

@@ -23,27 +23,12 @@ constexpr std::uint8_t kSamplesLeast = 2, kSamplesMost = 3;  // of a permit
 
 constexpr std::array<const char*, kGuardPhases> kPhases{"stopped", "init", "selftest", "ready",
                                                         "armed"};
-constexpr std::array<const char*, kGuardInputs> kInputs{"loaded",
-                                                        "tested",
-                                                        "proven",
-                                                        "refused",
-                                                        "period_good",
-                                                        "period_settled",
-                                                        "period_disturbed",
-                                                        "period_missed",
-                                                        "period_silent",
-                                                        "period_full",
-                                                        "fault_reported",
-                                                        "fault_stop",
-                                                        "tx_ok",
-                                                        "tx_fail",
-                                                        "board_ack",
-                                                        "board_moves",
-                                                        "reset_refused",
-                                                        "reset",
-                                                        "arm",
-                                                        "restart",
-                                                        "kill"};
+constexpr std::array<const char*, kGuardInputs> kInputs{
+    "loaded",         "tested",           "proven",        "refused",       "period_good",
+    "period_settled", "period_disturbed", "period_missed", "period_silent", "period_full",
+    "fault_reported", "fault_stop",       "tx_ok",         "tx_fail",       "board_ack",
+    "board_moves",    "reset_refused",    "reset",         "arm",           "restart",
+    "kill",           "own_stop"};
 constexpr std::array<const char*, kGuardActions> kActions{
     "none",   "begin",  "pass", "hear",   "wait",    "wait_deaf", "good", "disturbed",
     "missed", "permit", "stop", "repeat", "confirm", "withdraw",  "mute"};
@@ -146,7 +131,8 @@ std::vector<Named> all_events() {
                                      {"reset_edge", reset_edge},
                                      {"arm", arm},
                                      {"restart", restart},
-                                     {"kill", kill}}) {
+                                     {"kill", kill},
+                                     {"own_stop", own_stop}}) {
         events.push_back({name, {.kind = kind}});
     }
     return events;

@@ -152,6 +152,7 @@ inline happen() {
     :: kind = K_loaded
     :: kind = K_tested
     :: kind = K_kill
+    :: evaluates -> kind = K_own_stop; forget_snapshot()
     fi
 }
 
@@ -205,6 +206,8 @@ inline observe() {
     :: kind == K_reset_edge && w_latched && w_confirmed && !w_noise && !w_noise_before ->
         w_latched = 0; w_released = 1; w_tested = 0; w_heard = 0; w_coherent = 0
     :: kind == K_arm && w_released == 1 -> w_released = 2
+    :: kind == K_own_stop ->
+        w_released = (w_released == 2 -> 1 : w_released); w_coherent = 0
     :: kind == K_tested && phase == P_selftest -> w_tested = 1
     :: kind == K_tx_ok && phase == P_selftest -> w_heard = 1
     :: kind == K_kill || kind == K_restart ->
@@ -216,7 +219,8 @@ inline observe() {
 
 /* The eight properties, in the order of docs/reference/states.md. */
 inline judge() {
-    p1 = !sends_permit || (was == P_armed && phase == P_armed && w_proof && kind == K_snapshot);
+    p1 = !sends_permit || (was == P_armed && phase == P_armed && w_proof && w_released == 2 &&
+                           kind == K_snapshot);
     p2 = !(sends_permit && w_owes_stop) &&
          !(was == P_armed && (kind == K_fault_stop || kind == K_tx_fail) &&
            !(phase == P_stopped && sends_stop));

@@ -29,8 +29,8 @@ def scripts_of_operators():
         one.step("operator", action=action, step=kind, stands=1, counter=17, nonce=0x345678,
                  reads=reads,
                  want=sealed(0x584, [0x11, action, kind, 1, 0x78, 0x56, 0x34]))
-    for phase, action, refusal, reads in ((4, 0x96, 0, 1), (0, 0, 5, 1), (5, 0, 0, 0),
-                                          (0, 1, 0, 0), (0, 0, 6, 0)):
+    for phase, action, refusal, reads in ((4, 0x96, 0, 1), (0, 0, 6, 1), (5, 0, 0, 0),
+                                          (0, 1, 0, 0), (0, 0, 7, 0)):
         one.step("status", phase=phase, action=action, refusal=refusal, counter=2, nonce=0x345678,
                  reads=reads,
                  want=sealed(0x604, [0x12, phase, action, refusal, 0x78, 0x56, 0x34]))

@@ -160,6 +160,9 @@ const std::vector<RowCase> kRows{
     {"kill",
      [](Fixture& b) { b.on(GuardEventKind::kill); },
      {"stopped silent", kInit, kInit, kInit, kInit}},
+    {"own_stop",
+     [](Fixture& b) { b.on(GuardEventKind::own_stop); },
+     {kStopped, kInit, kTest, kTest, kTest}},
 };
 
 TEST(GuardState, EveryInputInEveryPhase) {
