@@ -22,7 +22,7 @@ const char* unit_of(const Axis& axis) {
     return axis.kind == AxisKind::rotary ? "deg" : "mm";
 }
 
-Json describe_axis(const Axis& axis) {
+Json describe_axis(const Axis& axis, double blind_speed) {
     const bool rotary = axis.kind == AxisKind::rotary;
     const double unit = rotary ? 180.0 / kPi : 1.0;
     return {{"name", axis.name},
@@ -35,7 +35,9 @@ Json describe_axis(const Axis& axis) {
             {"jerk_per_s3", has_jerk_limit(axis) ? Json(axis.jerk_max * unit) : Json(nullptr)},
             {"stopping_per_s2", axis.stopping_min * unit},
             {"stopping_distance", stopping_distance(axis) * unit},
-            {"stopping_time_s", stopping_time_s(axis)}};
+            {"stopping_time_s", stopping_time_s(axis)},
+            {"blind_speed_per_s",
+             blind_speed < axis.speed_max ? Json(blind_speed * unit) : Json(nullptr)}};
 }
 
 Json facts_of(const Machine& machine, const CanSignal& signal, std::uint8_t frame_bytes) {
@@ -226,8 +228,9 @@ std::string describe_check(const CheckedFile& checked, const CheckReport& report
         out["compiled_from"] = report.loaded.source.file;
     }
     out["axes"] = Json::array();
-    for (const Axis& axis : machine.axes) {
-        out["axes"].push_back(describe_axis(axis));
+    const std::vector<double> blind = blind_speeds(machine);
+    for (std::size_t i = 0; i < blind.size(); ++i) {
+        out["axes"].push_back(describe_axis(machine.axes[i], blind[i]));
     }
     out["frames"] = describe_frames(machine);
     out["bodies"] = describe_bodies(machine, facts);

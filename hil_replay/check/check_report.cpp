@@ -4,14 +4,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "config/init/write_machine.hpp"
 #include "config/text/quote_text.hpp"
 #include "core/base/sincos.hpp"
 #include "core/certificate/joint_path.hpp"
+#include "core/certificate/limit_evidence.hpp"
 #include "core/guard/margin_advisory.hpp"
 #include "core/mesh/mesh_check.hpp"
+#include "firmware_if/cli/limit_text.hpp"
+#include "firmware_if/protocol/axis_frames.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
 
 namespace axg {
@@ -97,7 +101,37 @@ double stopping_time_s(const Axis& axis) noexcept {
     return axis.speed_max / axis.stopping_min;
 }
 
+std::vector<double> blind_speeds(const Machine& machine) {
+    const AxisFrameSet set = make_frame_set(machine);
+    std::array<double, kAxesMax> count{};
+    for (std::uint32_t i = 0; i < set.axis_count; ++i) {
+        count[i] = set.axes[i].unit;
+    }
+    const LimitRules rules = limit_rules(machine, count);
+    std::vector<double> out;
+    for (std::uint32_t i = 0; i < machine.axes.size(); ++i) {
+        out.push_back(blind_speed(rules, i));
+    }
+    return out;
+}
+
 namespace {
+
+/// Where the certificate can not know of a frozen encoder.
+std::string blind_line(const Machine& machine) {
+    std::string text;
+    const std::vector<double> speeds = blind_speeds(machine);
+    for (std::size_t i = 0; i < speeds.size(); ++i) {
+        const Axis& axis = machine.axes[i];
+        const bool rotary = axis.kind == AxisKind::rotary;
+        text += text.empty() ? "" : ", ";
+        text += speeds[i] < axis.speed_max
+                    ? fmt::format("{} {:.3g} {}", axis.name, in_axis_units(axis, speeds[i]),
+                                  rotary ? "deg/s" : "mm/s")
+                    : axis.name + " never";
+    }
+    return text;
+}
 
 /// Errors that the file does not state are guesses of this program, not of its author.
 void warn_of_guessed_errors(CheckReport& report) {
@@ -162,6 +196,8 @@ void report_axes(CheckReport& report) {
             has_jerk_limit(axis) ? fmt::format("{:.6g} {}/s3", axis.jerk_max * unit, name) : "none",
             distance * unit, name, stopping_time_s(axis) * 1000);
     }
+    fmt::print(report.words, "  a frozen encoder is detected above: {}\n",
+               blind_line(report.loaded.machine));
 }
 
 void report_bodies(CheckReport& report) {

@@ -80,6 +80,8 @@ void report_guesses(CheckReport& report, const std::string& file);
 /// Guaranteed braking distance from full speed, mm or rad.
 [[nodiscard]] double stopping_distance(const Axis& axis) noexcept;
 [[nodiscard]] double stopping_time_s(const Axis& axis) noexcept;
+/// [axes] Above these speeds the guard sees an encoder that freezes, mm/s or rad/s (blind_speed).
+[[nodiscard]] std::vector<double> blind_speeds(const Machine& machine);
 
 [[nodiscard]] const char* to_text(CanFormat format);
 [[nodiscard]] const char* to_text(SignalType type);
