@@ -17,6 +17,7 @@
 #include "hil_replay/drive/drive_run.hpp"
 #include "hil_replay/lab/ablations/ablations.hpp"
 #include "tests/support/approach_machine.hpp"
+#include "tests/support/frozen_axis.hpp"
 #include "tests/support/lazy_motion.hpp"
 #include "tests/support/wild_approach.hpp"
 #include "tests/support/wild_wire.hpp"
@@ -37,7 +38,9 @@ enum class Wrong : std::uint8_t {
     late,  // CapFault
     half,
     ignores,
-    reacts,  // caps of single axes are kept by a feed that reacts
+    reacts,          // caps of single axes are kept by a feed that reacts
+    frozen,          // the count of one axis freezes in motion
+    frozen_trusted,  // and the guard takes it for true
 };
 
 struct ApproachScene {
@@ -61,7 +64,7 @@ struct ApproachScene {
 struct ApproachOutcome {
     BoardState state = BoardState::waiting;
     DriveStop stop;
-    bool has_moved = false, touches = false, is_slowed = false;
+    bool has_moved = false, touches = false, is_slowed = false, is_frozen = false;
     double least_mm = HUGE_VAL, rest_mm = HUGE_VAL;
     std::uint64_t breaches = 0;      // MotionBoard::cap_breaches
     std::uint64_t caught_after = 0;  // samples from the first of them to left_cap; 0: none
@@ -256,6 +259,11 @@ class ApproachRun {
             std::min(15, machine_.can.permit_samples.most + (wrong == Wrong::one_more ? 1 : 0)));
         drawn_.story.reacts_ticks = wrong == Wrong::reacts ? drawn_.reacts_ticks : 0;
         tool_ = {.number = drawn_.story.tool, .next = drawn_.story.next_tool};
+        if (wrong == Wrong::frozen || wrong == Wrong::frozen_trusted) {
+            frozen_.emplace(of_board_, ~seed);
+            drawn_.faults.lost = 0;  // a lost sample may hide a freeze at twice the speed
+            machine_.guard.reports_limits = wrong == Wrong::frozen_trusted;
+        }
         if (wrong == Wrong::ignored) {
             drawn_.faults = {.silence = Silence::from_beginning};
         }
@@ -345,6 +353,8 @@ class ApproachRun {
             early_.emplace(machine_.can);
             loop.of_guard = [this](CanFrame& frame) { early_->of_guard(frame); };
             loop.of_board = [this](CanFrame& frame) { early_->of_board(frame); };
+        } else if (frozen_) {
+            loop.of_board = [this](CanFrame& frame) { frozen_->of_board(frame); };
         }
         const PermitSamples range = machine_.can.permit_samples;
         const std::int64_t more_us = horizon_us(range.most) - horizon_us(range.least);
@@ -385,6 +395,10 @@ class ApproachRun {
                 out_.has_moved = true;
                 end_us = board.next_latch_us() + kLongestUs + 2 * buffer_us;
             }
+            if (frozen_ && out_.has_moved) {
+                frozen_->look(board.axes());
+                out_.is_frozen = frozen_->is_frozen();
+            }
             out_.is_slowed =
                 out_.is_slowed || (out_.has_moved && board.permits().speed_cap() < kCapRapid);
         }
@@ -399,6 +413,7 @@ class ApproachRun {
     WithoutRules rules_;
     SpindleTool tool_;
     std::optional<EarlyAck> early_;
+    std::optional<FrozenAxis> frozen_;
     ApproachOutcome out_;
 };
 

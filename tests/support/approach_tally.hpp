@@ -15,7 +15,8 @@ namespace axg::test {
 
 struct ApproachTally {
     std::uint64_t approaches = 0, moved = 0, touched = 0, stopped = 0, passed = 0, slowed = 0;
-    std::uint64_t left_cap = 0, left_limits = 0, breaches = 0, uncovered = 0, refused_cap = 0;
+    std::uint64_t frozen = 0, frozen_touched = 0, left_cap = 0, left_limits = 0, breaches = 0,
+                  uncovered = 0, refused_cap = 0;
     std::uint64_t samples = 0, refused = 0;
     WildCounts wire;
     double least_mm = HUGE_VAL;
@@ -27,6 +28,8 @@ struct ApproachTally {
         moved += one.has_moved ? 1 : 0;
         touched += one.touches ? 1 : 0;
         stopped += one.state == BoardState::stopped ? 1 : 0;
+        frozen += one.is_frozen ? 1 : 0;
+        frozen_touched += one.is_frozen && one.touches ? 1 : 0;
         passed += one.state == BoardState::finished ? 1 : 0;
         slowed += one.is_slowed ? 1 : 0;
         left_cap += one.stop.reason == StopReason::left_cap ? 1 : 0;
@@ -63,9 +66,10 @@ inline ApproachTally run_approaches(std::uint64_t seed, std::uint64_t count, Wro
         const ApproachOutcome one = ApproachRun(scene, seed + i, wrong, aim).play();
         scene.loaded.machine = as_made;
         tally.add(one);
-        const bool is_red =
-            one.touches || one.breaches > 0 || one.stop.reason == StopReason::left_limits;
-        if (is_red && wrong == Wrong::nothing) {
+        const bool is_frozen = wrong == Wrong::frozen;
+        const bool is_red = one.touches || one.breaches > 0 ||
+                            (one.stop.reason == StopReason::left_limits && !is_frozen);
+        if (is_red && (wrong == Wrong::nothing || is_frozen)) {
             std::printf("touches, leaves its limits or breaks its cap: AXG_SEED=%llu AXG_COUNT=1\n",
                         static_cast<unsigned long long>(seed + i));
         }
