@@ -211,6 +211,31 @@ TEST(MotionHistory, TwoSnapshotsGiveTheMeanAndWhatMayHaveChangedSince) {
     EXPECT_NEAR(range.speed_high, 0.102 / 0.95e-3 + 2.1, 1e-3);
 }
 
+// An axis that braked at 4000 mm/s2 for 16 ms comes to rest now: it passed the oldest sample at 64
+// mm/s, so 50 us of jitter moved that one by 3.2 um, and the one in between by 1.6. The speed of
+// now, next to none, would explain a fraction of it.
+TEST(MotionHistory, JitterMovesAnOlderSampleByTheSpeedOfThen) {
+    SampleErrors jittery = kGood;
+    jittery.latch_jitter_s = 1e-4;
+    jittery.position = 0;
+    jittery.is_jerk_limited = true;
+    Axis axis = slow_axis();
+    axis.acceleration_max = 8000;
+    axis.jerk_max = 1;  // the acceleration was the same all the time
+    for (const double way : {1.0, -1.0}) {
+        MotionHistory history;
+        for (std::uint64_t k = 0; k <= 16; ++k) {
+            const double late_s = k == 0 ? -5e-5 : k == 8 ? 5e-5 : 0;
+            const double before_s = (16 - static_cast<double>(k)) * 1e-3 - way * late_s;
+            note_snapshot(history, at(k, -0.5 * 4000 * before_s * before_s), 1);
+        }
+        const AxisRange range = range_of(history, 0, axis, jittery);
+        EXPECT_LT(range.acceleration_high - range.acceleration_low, 2000) << "no bound at all";
+        EXPECT_LE(range.acceleration_low, -4000);
+        EXPECT_GE(range.acceleration_high, -4000);
+    }
+}
+
 // Three samples lost: 0.4 mm in 4 ms, 100 +- (8 + 0.5).
 TEST(MotionHistory, LostSamplesWidenTheRange) {
     MotionHistory history;

@@ -298,6 +298,24 @@ TEST(LimitEvidence, RangesThatContradictEachOtherAreAFact) {
               LimitKind::none);
 }
 
+// In a stop of its own an axis gets no farther than its last believed state could lead it, and the
+// errors of two positions. Only the ranges judge here: from rest, in 17 ms, free motion leads 0.31
+// mm.
+TEST(LimitEvidence, AStopOfTheBoardsOwnGetsNoFartherThanTheLastBelievedStateLeads) {
+    Machine machine = one_axis();
+    machine.axes[0].position_error = 0.01;
+    machine.guard.free_jerk_limited = true;
+    for (const double way : {1.0, -1.0}) {
+        for (const double moved : {0.30, 0.36}) {
+            Board board(machine);
+            board.rules.weights = {.speed = 1e6, .acceleration = 1e6, .jerk = 1e6};
+            const LimitFact fact =
+                board.first_fact(200, [&](double t) { return t < 0.0995 ? 0.0 : way * moved; });
+            EXPECT_EQ(fact.kind, moved < 0.31 ? LimitKind::none : LimitKind::speed_range) << moved;
+        }
+    }
+}
+
 // Half a turn between two points, and the short way round may be the wrong one.
 TEST(LimitEvidence, AnEndlessAxisIsFollowedAcrossTheTurn) {
     Machine machine = one_axis();

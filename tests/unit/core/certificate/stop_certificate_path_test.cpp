@@ -353,6 +353,27 @@ TEST_F(StopCertificateLookAhead, ContainmentIsTestedAnewWhereThePathEnds) {
     EXPECT_EQ(tests, 1U);
 }
 
+// Where the path is known for the least n and not for a longer one, the longer one would be proven
+// in a box of positions, and that box be taken for one around the path.
+TEST_F(StopCertificateLookAhead, ALongerPermitIsProvenByTheSameKindOfBoxAsTheLeast) {
+    m.can.permit_samples = {.least = 3, .most = 15};
+    make();
+    ASSERT_EQ(run(1, 210).samples, 15);
+    int shorter = 0;
+    for (std::uint64_t k = 211; k <= 450; ++k) {  // the path ends at 410
+        note(k);
+        const CycleResult result = decide();
+        ASSERT_TRUE(result.has_permit) << k;
+        const auto known = [&](std::uint32_t samples) {
+            const double end = free_seconds(m, samples) / (kSamplePeriodS * (1 - kPeriodShare));
+            return static_cast<double>(k) + std::ceil(end) <= 210.0 + kLookAhead;
+        };
+        EXPECT_EQ(result.samples, known(3) && !known(15) ? 3 : 15) << k;
+        shorter += result.samples == 3 ? 1 : 0;
+    }
+    EXPECT_GT(shorter, 0);
+}
+
 TEST_F(StopCertificateLookAhead, APathThatNoAxisCanFollowStops) {
     turns_at = 620;
     const CycleResult before = run(1, 420);

@@ -114,6 +114,128 @@ TEST_F(AxguardBoard, EachRefusalOfAFrameHasItsName) {
     }
 }
 
+TEST_F(AxguardBoard, EachWordThatLetsMoveIsHandedOn) {
+    begin();
+    for (const axg_board_word word : {AXG_BOARD_WORD_SLOW, AXG_BOARD_WORD_RUN}) {
+        const auto live = static_cast<std::uint8_t>(board.live + 1);
+        ASSERT_EQ(
+            hear({.word = static_cast<std::uint8_t>(word), .number = 3, .live = live, .level = 3},
+                 at),
+            AXG_BOARD_HEARD_PERMIT);
+        const axg_board_motion motion = axg_board_may_move(&board, at);
+        EXPECT_EQ(motion.word, word);
+        EXPECT_EQ(motion.level, 3);
+    }
+    axg_board_moves(&board, false, at);
+    axg_board_change(&board, true, at);
+    ASSERT_TRUE(latch_at(4, at + 1));
+    ASSERT_EQ(
+        hear({.word = AXG_BOARD_WORD_JOG, .number = 4, .live = 7, .cap = 251, .mask = 255}, at + 2),
+        AXG_BOARD_HEARD_PERMIT)
+        << "with jog the cap is not read";
+    EXPECT_EQ(axg_board_may_move(&board, at + 3).word, AXG_BOARD_WORD_JOG);
+    EXPECT_EQ(axg_board_may_move(&board, at + 3).ordered.of[0], 250);
+    EXPECT_EQ(refusal_of({.number = 4, .live = 8}, at + 4), AXG_BOARD_REFUSED_JOG);
+}
+
+TEST_F(AxguardBoard, BoundsOfAPermitAreInclusive) {
+    options.permit_samples_max = 12;
+    begin();
+    ASSERT_TRUE(latch(4));
+    EXPECT_EQ(refusal_of({.number = 4, .live = 19, .samples = 12}, at), AXG_BOARD_REFUSED_NOTHING)
+        << "15 ahead";
+    EXPECT_EQ(refusal_of({.number = 4, .live = 35, .samples = 12}, at), AXG_BOARD_REFUSED_LIVE)
+        << "16 ahead";
+    EXPECT_EQ(refusal_of({.number = 4, .live = 36, .samples = 13}, at), AXG_BOARD_REFUSED_SAMPLES);
+    auto [plain, twin] = board_pair({.number = 4, .live = 37});
+    EXPECT_EQ(axg_board_frame(&board, &plain, at), AXG_BOARD_HEARD_PLAIN);
+    EXPECT_EQ(axg_board_frame(&board, &twin, at + 1000), AXG_BOARD_HEARD_PERMIT) << "T later";
+}
+
+TEST_F(AxguardBoard, ASampleThatIsStampedAfterNowOrHasNoCounterIsNoEcho) {
+    begin();
+    ASSERT_TRUE(latch_at(4, at + 10));
+    EXPECT_EQ(refusal_of({.number = 4, .live = 5}, at + 9), AXG_BOARD_REFUSED_ECHO);
+    EXPECT_EQ(refusal_of({.number = 4, .live = 5}, at + 10), AXG_BOARD_REFUSED_NOTHING);
+    for (const unsigned echo : {0U, 241U, 245U}) {  // 245 is 5 after a lap
+        auto [plain, twin] = board_pair({.number = 4, .live = 6});
+        plain.data[1] = static_cast<std::uint8_t>(echo);
+        twin.data[1] = static_cast<std::uint8_t>(~echo);
+        (void)axg_board_frame(&board, &plain, at + 20);
+        EXPECT_EQ(axg_board_frame(&board, &twin, at + 20), AXG_BOARD_HEARD_REFUSED);
+        EXPECT_EQ(board.last_refusal, AXG_BOARD_REFUSED_ECHO) << echo;
+    }
+}
+
+// Sample 19 was lost: in its place among the records is sample 3.
+TEST_F(AxguardBoard, ASampleThatWasLostIsNoEcho) {
+    begin();
+    ASSERT_TRUE(latch_at(20, at));
+    EXPECT_EQ(refusal_of({.number = 19, .live = 5, .samples = 15}, at), AXG_BOARD_REFUSED_ECHO);
+}
+
+TEST_F(AxguardBoard, AfterAChangeNothingIsOrdered) {
+    begin();
+    EXPECT_EQ(axg_board_may_move(&board, at).ordered.of[0], 250);
+    axg_board_moves(&board, false, at);
+    axg_board_change(&board, false, at);
+    EXPECT_EQ(axg_board_may_move(&board, at).ordered.of[0], 0);
+    EXPECT_EQ(axg_board_may_move(&board, at).level, 0);
+}
+
+TEST_F(AxguardBoard, APermitWithAnEarlierEndShortensNothing) {
+    begin();
+    ASSERT_TRUE(latch(4));
+    ASSERT_EQ(hear({.number = 4, .live = 5, .samples = 3}, at), AXG_BOARD_HEARD_PERMIT);
+    EXPECT_EQ(axg_board_may_move(&board, at).end_us, instant_of(3) + 10'000);
+}
+
+TEST_F(AxguardBoard, AFrameOfTheWrongShapeEndsThePairThatWaits) {
+    begin();
+    ASSERT_TRUE(latch(4));
+    const auto [plain, twin] = board_pair({.number = 4, .live = 5});
+    for (const bool is_twin : {false, true}) {
+        axg_board_can_frame odd = is_twin ? twin : plain;
+        odd.length = 7;
+        (void)axg_board_frame(&board, &plain, at);
+        const std::uint32_t before = board.refused[AXG_BOARD_REFUSED_SHAPE];
+        EXPECT_EQ(axg_board_frame(&board, &odd, at), AXG_BOARD_HEARD_REFUSED);
+        EXPECT_EQ(board.refused[AXG_BOARD_REFUSED_SHAPE], before + 1);
+        EXPECT_EQ(axg_board_frame(&board, &twin, at), AXG_BOARD_HEARD_REFUSED);
+        EXPECT_EQ(board.last_refusal, AXG_BOARD_REFUSED_TWIN_ALONE) << is_twin;
+    }
+}
+
+// The word stop is obeyed whatever it echoes or answers; a right answer moves the live reference.
+TEST_F(AxguardBoard, TheWordStopStopsAfterTheFirstMotionAndIsNotYetBefore) {
+    const auto stop = [&](std::uint32_t number, std::uint8_t live, std::uint32_t nonce = 0xC0FFEE) {
+        return hear({.word = AXG_BOARD_WORD_STOP,
+                     .number = number,
+                     .live = live,
+                     .samples = 0,
+                     .nonce = nonce},
+                    at);
+    };
+    arm();
+    for (std::uint32_t number = 0; number <= 4; ++number) {
+        ASSERT_TRUE(latch(number));
+    }
+    EXPECT_EQ(stop(4, 4), AXG_BOARD_HEARD_NOT_YET);
+    EXPECT_EQ(refusal_of({.number = 4, .live = 5}, at), AXG_BOARD_REFUSED_NOTHING);
+    EXPECT_EQ(stop(4, 6), AXG_BOARD_HEARD_NOT_YET);
+    EXPECT_EQ(refusal_of({.number = 4, .live = 6}, at), AXG_BOARD_REFUSED_LIVE);
+    EXPECT_EQ(stop(4, 9, 0xBEEF), AXG_BOARD_HEARD_NOT_YET);
+    EXPECT_EQ(stop(100, 9), AXG_BOARD_HEARD_NOT_YET) << "there is no such sample";
+    EXPECT_EQ(refusal_of({.number = 4, .live = 9}, at), AXG_BOARD_REFUSED_NOTHING)
+        << "of wrong answers nothing was taken";
+    for (const std::uint32_t number : {3U, 100U}) {
+        begin();
+        EXPECT_EQ(stop(number, 5), AXG_BOARD_HEARD_STOP);
+        EXPECT_EQ(board.phase, AXG_BOARD_STOPPED);
+        EXPECT_EQ(board.cause, AXG_BOARD_CAUSE_STOP_WORD);
+    }
+}
+
 // Rule (i): the low bits of a permit come again after sixteen, so one is named first within fifteen
 // samples; then for as long as the axes slow down.
 TEST(AxguardBoardCap, APermitIsNamedWhileTheAxesSlowDown) {
@@ -193,6 +315,141 @@ TEST(AxguardBoardCap, APermitWhoseSampleWasFasterThanItsProofIsRefusedForItsCap)
     EXPECT_EQ(fixture.board.last_refusal, AXG_BOARD_REFUSED_CAP);
     EXPECT_EQ(axg_board_may_move(&fixture.board, fixture.instant_of(5) + 500).end_us,
               fixture.instant_of(5) + 10'000);
+}
+
+/// A board that keeps caps, in motion; its samples named permits of no cap so far.
+class AxguardBoardBounds : public ::testing::Test, public BoardFixture {
+  protected:
+    AxguardBoardBounds() : BoardFixture(AXG_BOARD_CAP_ENFORCED) {}
+    void SetUp() override {
+        begin();
+        (void)keep(250, instant_of(3) + 600);
+    }
+    axg_board_caps keep(std::uint8_t bound, std::uint64_t at_us) {
+        axg_board_caps wanted{};
+        std::memset(wanted.of, bound, sizeof wanted.of);
+        return axg_board_keeps(&board, &wanted, at_us);
+    }
+    /// A sample that names a permit of cap 20, which is kept.
+    void slow_down() {
+        (void)keep(20, instant_of(3) + 700);
+        (void)latch(4);
+        (void)hear({.number = 4, .live = 5, .cap = 20, .mask = 255}, instant_of(4) + 100);
+        (void)latch(5);
+        (void)hear({.number = 5, .live = 6, .cap = 20, .mask = 255}, instant_of(5) + 100);
+    }
+};
+
+TEST_F(AxguardBoardBounds, TheMaskBindsItsAxesAndNoOthers) {
+    (void)latch(4);
+    ASSERT_EQ(hear({.number = 4, .live = 5, .cap = 20, .mask = 0x85}, instant_of(4) + 100),
+              AXG_BOARD_HEARD_PERMIT);
+    const axg_board_caps ordered = axg_board_may_move(&board, instant_of(4) + 200).ordered;
+    for (unsigned i = 0; i < AXG_BOARD_CAP_GROUPS; ++i) {
+        EXPECT_EQ(ordered.of[i], (0x85U >> i & 1U) != 0 ? 20 : 250) << i;
+    }
+}
+
+TEST_F(AxguardBoardBounds, AGroupWithoutAnAxisKeepsNothing) {
+    const axg_board_caps kept = keep(250, instant_of(3) + 650);
+    for (std::uint32_t i = 0; i < AXG_BOARD_CAP_GROUPS; ++i) {
+        EXPECT_EQ(kept.of[i], i < options.axis_count ? 250 : 0) << i;
+    }
+}
+
+TEST_F(AxguardBoardBounds, ARaiseIsAtMostThatOfThePermitAndNeverInAStop) {
+    slow_down();
+    (void)latch(6);
+    ASSERT_EQ(hear({.number = 6, .live = 7, .cap = 90, .mask = 255}, instant_of(6) + 100),
+              AXG_BOARD_HEARD_PERMIT);
+    EXPECT_EQ(keep(60, instant_of(6) + 200).of[0], 60);
+    EXPECT_EQ(keep(250, instant_of(6) + 300).of[0], 90);
+    EXPECT_EQ(hear({.number = 6, .live = 8, .cap = 90, .mask = 255}, instant_of(6) + 350),
+              AXG_BOARD_HEARD_PERMIT)
+        << "of the two caps the larger counts";
+    axg_board_stop(&board, instant_of(6) + 400);
+    EXPECT_EQ(keep(20, instant_of(6) + 500).of[0], 20);
+    EXPECT_EQ(keep(90, instant_of(6) + 600).of[0], 20);
+}
+
+// The permit that counted last has the end in force, is the newest, and no axis is above it.
+TEST_F(AxguardBoardBounds, ARaiseWaitsForThePermitThatAllowsIt) {
+    slow_down();
+    (void)latch(6);
+    ASSERT_EQ(
+        hear({.number = 6, .live = 7, .cap = 90, .mask = 255, .samples = 3}, instant_of(6) + 100),
+        AXG_BOARD_HEARD_PERMIT);
+    EXPECT_EQ(keep(90, instant_of(6) + 200).of[0], 20) << "an older permit ends later";
+    (void)latch(7);
+    ASSERT_EQ(hear({.number = 7, .live = 8, .cap = 90, .mask = 255}, instant_of(7) + 100),
+              AXG_BOARD_HEARD_PERMIT);
+    EXPECT_EQ(keep(90, instant_of(7) + 200).of[0], 90);
+    (void)latch(8);
+    ASSERT_EQ(hear({.number = 8, .live = 9, .cap = 30, .mask = 1}, instant_of(8) + 100),
+              AXG_BOARD_HEARD_PERMIT);
+    const axg_board_caps kept = keep(250, instant_of(8) + 200);
+    EXPECT_EQ(kept.of[0], 90);
+    EXPECT_EQ(kept.of[1], 90) << "axis 0 still has to slow down for the same permit";
+}
+
+TEST_F(AxguardBoardBounds, AfterAPermitThatIsRefusedForItsCapNothingRises) {
+    slow_down();
+    (void)latch(6);
+    ASSERT_EQ(hear({.number = 6, .live = 7, .cap = 90, .mask = 255}, instant_of(6) + 100),
+              AXG_BOARD_HEARD_PERMIT);
+    EXPECT_EQ(keep(50, instant_of(6) + 200).of[0], 50);
+    ASSERT_EQ(hear({.number = 6, .live = 8, .cap = 20, .mask = 255}, instant_of(6) + 300),
+              AXG_BOARD_HEARD_REFUSED);
+    EXPECT_EQ(board.last_refusal, AXG_BOARD_REFUSED_CAP);
+    EXPECT_EQ(keep(90, instant_of(6) + 400).of[0], 50);
+}
+
+// What an axis was since the latch stays, however often it slowed down since.
+TEST_F(AxguardBoardBounds, ALaterRaiseDoesNotHideAnEarlierOne) {
+    slow_down();
+    (void)latch(6);
+    ASSERT_EQ(hear({.number = 6, .live = 7, .cap = 90, .mask = 255}, instant_of(6) + 100),
+              AXG_BOARD_HEARD_PERMIT);
+    EXPECT_EQ(keep(90, instant_of(6) + 200).of[0], 90);
+    EXPECT_EQ(keep(20, instant_of(6) + 300).of[0], 20);
+    EXPECT_EQ(keep(50, instant_of(6) + 400).of[0], 50);
+    EXPECT_EQ(hear({.number = 6, .live = 8, .cap = 50, .mask = 255}, instant_of(6) + 500),
+              AXG_BOARD_HEARD_REFUSED);
+    EXPECT_EQ(board.last_refusal, AXG_BOARD_REFUSED_CAP);
+}
+
+TEST_F(AxguardBoardBounds, AfterAChangeNoSampleNamesAPermitOfBefore) {
+    axg_board_says says{};
+    says.is_homed = true;
+    slow_down();
+    (void)latch(6);
+    EXPECT_EQ(axg_board_flags(&board, &says), 4U | 6U << 4U);
+    axg_board_moves(&board, false, instant_of(6) + 100);
+    axg_board_change(&board, false, instant_of(6) + 200);
+    (void)latch(7);
+    EXPECT_EQ(axg_board_flags(&board, &says), 0U);
+}
+
+// A bound that fell between a stamp and its latch: what it was at the stamp is not known.
+TEST_F(AxguardBoardBounds, ASampleFromBeforeTheLastChangeCountsAsRapid) {
+    for (const bool is_before : {false, true}) {
+        begin();
+        (void)keep(250, instant_of(3) + 600);
+        slow_down();
+        (void)keep(15, instant_of(5) + 300);
+        (void)keep(15, instant_of(5) + 900);  // no change
+        (void)latch_at(6, instant_of(5) + (is_before ? 299 : 300));
+        EXPECT_EQ(hear({.number = 6, .live = 7, .cap = 20, .mask = 255, .samples = 15},
+                       instant_of(6) + 100),
+                  is_before ? AXG_BOARD_HEARD_REFUSED : AXG_BOARD_HEARD_PERMIT);
+        EXPECT_EQ(board.last_refusal == AXG_BOARD_REFUSED_CAP, is_before);
+    }
+}
+
+TEST_F(AxguardBoard, ABoardThatKeepsNoCapKeepsRapid) {
+    begin();
+    const axg_board_caps wanted{};
+    EXPECT_EQ(axg_board_keeps(&board, &wanted, at).of[0], 250);
 }
 
 // Rules 3 to 5
