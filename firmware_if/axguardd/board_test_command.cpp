@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware_if/axguardd/board_test_command.hpp"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <poll.h>
 #include <sys/stat.h>
@@ -15,6 +16,7 @@
 
 #include "config/machine/effective_text.hpp"
 #include "firmware_if/axguardd/admission_command.hpp"
+#include "firmware_if/axguardd/board_test_record.hpp"
 #include "firmware_if/axguardd/latency_command.hpp"
 #include "firmware_if/board_test/board_player.hpp"
 #include "firmware_if/board_test/board_report.hpp"
@@ -37,7 +39,7 @@ constexpr std::int64_t kEchoWaitUs = 20'000;  // for the last frame to leave
 
 struct BoardTestArguments {
     MachineOptions machine;
-    std::string bus, cap = "none", state_dir = "/var/lib/axguardd", keys_file;
+    std::string bus, cap = "none", state_dir = "/var/lib/axguardd", keys_file, serial;
     BoardTestOptions test;
     double person_seconds = 120;
     int cpu = -1, priority = 80;
@@ -66,6 +68,39 @@ bool is_agreed(const BoardTestArguments& arguments) {
     std::string word;
     std::getline(std::cin, word);
     return word == "yes";
+}
+
+std::string record_path(const BoardTestArguments& arguments) {
+    return board_test_path(arguments.state_dir, arguments.bus);
+}
+
+/// What the record needs before anything moves: a place, and a serial or a person to ask for it.
+std::string record_fault(const BoardTestArguments& arguments) {
+    const bool is_asked = !arguments.is_agreed && isatty(STDIN_FILENO) != 0;
+    if (arguments.keys_file.empty()) {
+        return arguments.serial.empty() ? "" : "--serial needs --write, which stores the record";
+    }
+    if (arguments.serial.empty()) {
+        return is_asked ? record_place_fault(record_path(arguments))
+                        : "--write stores a record of this board. Pass its serial number with "
+                          "--serial TEXT.";
+    }
+    const std::string fault = serial_fault(arguments.serial);
+    return fault.empty() ? record_place_fault(record_path(arguments)) : "--serial: " + fault;
+}
+
+/// False: the record would be of no board.
+bool ask_serial(BoardTestArguments& arguments) {
+    if (arguments.keys_file.empty() || !arguments.serial.empty()) {
+        return true;
+    }
+    fmt::print(stderr, "Serial number of the board, as on its label: ");
+    std::getline(std::cin, arguments.serial);
+    const std::string fault = serial_fault(arguments.serial);
+    if (!fault.empty()) {
+        fmt::print(stderr, "axguardd: {}\n", fault);
+    }
+    return fault.empty();
 }
 
 /// As far as the system lets it: a late permit is found, and its case is played again.
@@ -128,8 +163,28 @@ bool exchange(const Machine& machine, SocketCan& wire, BoardPlayer& player) {
     return true;
 }
 
-int report(const BoardTestArguments& arguments, const Machine& machine,
+/// Keys first: a record without them would be of a configuration that nobody has.
+bool write_record(const BoardTestArguments& arguments, const LoadedMachine& loaded,
+                  const BoardTestResult& result) {
+    const std::string path = record_path(arguments);
+    if (const std::string fault = record_place_fault(path); !fault.empty()) {
+        fmt::print(stderr, "axguardd: {}\n", fault);
+        return false;
+    }
+    const BoardTestRecord record{
+        loaded.machine.name,
+        arguments.bus,
+        arguments.serial,
+        fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))),
+        configuration_hashes(with_measured_keys(loaded.machine, result), loaded.meshes),
+        counts_of(result),
+        result.abandoned};
+    return write_whole_file(path, describe_record(record), stderr);
+}
+
+int report(const BoardTestArguments& arguments, const LoadedMachine& loaded,
            const BoardTestResult& result) {
+    const Machine& machine = loaded.machine;
     const BoardTestCounts counts = counts_of(result);
     const std::string keys = machine_keys(machine, result);
     fmt::print(arguments.report.words(), "{}{}{} passed, {} FAILED, {} unclear, {} not tested\n",
@@ -139,8 +194,9 @@ int report(const BoardTestArguments& arguments, const Machine& machine,
     bool is_written = true;
     if (arguments.keys_file.empty()) {
         fmt::print(arguments.report.words(), "{}", keys);
-    } else if (!keys.empty()) {
-        is_written = write_whole_file(arguments.keys_file, keys, stderr);
+    } else {
+        is_written = (keys.empty() || write_whole_file(arguments.keys_file, keys, stderr)) &&
+                     write_record(arguments, loaded, result);
     }
     is_written =
         write_json(arguments.report, describe_board_test(machine, arguments.bus, result)) &&
@@ -190,14 +246,14 @@ int test_board(BoardTestArguments& arguments, const LoadedMachine& loaded) {
         fmt::print(stderr, "axguardd: {}\n", fault);
         return kExitCan;
     }
-    if (!is_agreed(arguments)) {
+    if (!is_agreed(arguments) || !ask_serial(arguments)) {
         return kExitUsage;
     }
     be_on_time(arguments);
     BoardPlayer player(machine, arguments.test);
     wire->forget();
     play(machine, *wire, player);
-    return report(arguments, machine, player.result());
+    return report(arguments, loaded, player.result());
 }
 
 std::string board_of(const CanLayout& can) {
@@ -222,6 +278,10 @@ std::string report_fault(const std::string& name) {
 }
 
 int run_board_test(BoardTestArguments& arguments) {
+    if (const std::string fault = record_fault(arguments); !fault.empty()) {
+        fmt::print(stderr, "axguardd: {}\n", fault);
+        return kExitUsage;
+    }
     const OneGuard claimed(arguments.state_dir, arguments.bus);
     if (claimed.status() != OneGuard::Status::mine) {
         fmt::print(stderr, "axguardd: {}\n", claimed.fault());
@@ -231,10 +291,7 @@ int run_board_test(BoardTestArguments& arguments) {
     if (const int code = load(arguments.machine, loaded); code != kExitClean) {
         return code;
     }
-    const bool has_board = has_session(loaded.machine.can) &&
-                           loaded.machine.can.format != CanFormat::cia402 &&
-                           loaded.machine.can.format != CanFormat::signals;
-    if (!has_board) {
+    if (!is_testable(loaded.machine.can)) {
         fmt::print(stderr,
                    "axguardd: {}: the board does not read permits of version 2 (found {}, expected "
                    "can.format classical or fd and can.permit: 2)\n",
@@ -258,6 +315,10 @@ std::string case_fault(const std::string& name) {
 
 }  // namespace
 
+bool is_testable(const CanLayout& can) noexcept {
+    return has_session(can) && can.format != CanFormat::cia402 && can.format != CanFormat::signals;
+}
+
 void add_board_test(CommandLine& line) {
     const auto arguments = std::make_shared<BoardTestArguments>();
     const Command command = line.add_command(
@@ -273,6 +334,9 @@ void add_board_test(CommandLine& line) {
         .add_output("--write", arguments->keys_file,
                     "write the measured machine-file keys to this file [default: stdout]")
         .check(report_fault);
+    command.add_option("--serial", arguments->serial,
+                       "serial number of the board, for the record that --write stores "
+                       "[default: prompted for]");
     command
         .add_option("--only", arguments->test.only,
                     "run only this case, after the cases run and lapse")
@@ -288,7 +352,8 @@ void add_board_test(CommandLine& line) {
         .shows_default();
     command.add_flag("--local-board", arguments->test.accepts_local,
                      "accept frames sent by this host (vcan testing only)");
-    command.add_option("--state-dir", arguments->state_dir, "folder of the lock file")
+    command
+        .add_option("--state-dir", arguments->state_dir, "folder of the lock file and the record")
         .shows_default();
     add_thread_options(command, arguments->cpu, arguments->priority);
     command.set_action([arguments] { return run_board_test(*arguments); });

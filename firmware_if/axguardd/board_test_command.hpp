@@ -5,6 +5,10 @@
 namespace axg {
 
 class CommandLine;
+struct CanLayout;
+
+/// Whether board-test can play to the board of this machine file.
+[[nodiscard]] bool is_testable(const CanLayout& can) noexcept;
 
 void add_board_test(CommandLine& line);
 

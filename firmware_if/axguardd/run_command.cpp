@@ -18,6 +18,7 @@
 #include "firmware_if/axguardd/admission_command.hpp"
 #include "firmware_if/axguardd/axguardd_json.hpp"
 #include "firmware_if/axguardd/board_test_command.hpp"
+#include "firmware_if/axguardd/board_test_record.hpp"
 #include "firmware_if/axguardd/doctor_command.hpp"
 #include "firmware_if/axguardd/latency_command.hpp"
 #include "firmware_if/axguardd/live_engines.hpp"
@@ -158,6 +159,17 @@ void log_start(const RunArguments& arguments, const Machine& machine) {
                    : "");
 }
 
+/// Whether a board was tested for this configuration; it decides nothing. Boards without permits
+/// of version 2 cannot be tested.
+FoundRecord log_board_test(const RunArguments& arguments, const LoadedMachine& loaded) {
+    const std::string path = board_test_path(arguments.state_dir, arguments.bus);
+    FoundRecord found = find_record(path, configuration_hashes(loaded.machine, loaded.meshes));
+    if (is_testable(loaded.machine.can)) {
+        fmt::print(stderr, "axguardd: {}\n", words_of(found, path));
+    }
+    return found;
+}
+
 /// Everything that is fallible and slow, before the first frame.
 int guard_bus(const RunArguments& arguments, LoadedMachine& loaded) {
     const bool is_stoppable = arguments.mode == "stoppable";
@@ -200,7 +212,8 @@ int guard_bus(const RunArguments& arguments, LoadedMachine& loaded) {
         return kExitInput;
     }
     const StatusLine status_line(machine, arguments.bus, arguments.mode,
-                                 configuration_hash(machine, loaded.meshes));
+                                 configuration_hash(machine, loaded.meshes),
+                                 log_board_test(arguments, loaded));
     ThreadOptions threads = with_black_box(arguments, loaded, line ? &*line : nullptr);
     // Measured with the rest: the admission counts its memory.
     std::optional<CpuEngine> status_engine =

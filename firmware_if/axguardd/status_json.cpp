@@ -222,17 +222,31 @@ bool is_why_or_null(const Json& value) {
 bool is_hashes(const Json& value) {
     return value == "required" || value == "none";
 }
+bool is_text_or_null(const Json& value) {
+    return value.is_null() || is_text(value);
+}
+bool is_board_test(const Json& value) {
+    if (!value.is_object() || !value.contains("record") || !value.contains("serial") ||
+        !value.contains("date") || !value.contains("differs")) {
+        return false;
+    }
+    const Json& differs = value["differs"];
+    return is_text(value["record"]) && is_text_or_null(value["serial"]) &&
+           is_text_or_null(value["date"]) && differs.is_array() &&
+           std::all_of(differs.begin(), differs.end(), is_text);
+}
 
 struct StatusKey {
     const char* name;
     IsOfType is_of_type;
 };
 /// In every line, and after the phase in a line with a view.
-constexpr std::array<StatusKey, 6> kHeadKeys{{{"axguardd", is_text},
+constexpr std::array<StatusKey, 7> kHeadKeys{{{"axguardd", is_text},
                                               {"bus", is_text},
                                               {"machine", is_text},
                                               {"configuration_sha256", is_text},
                                               {"mode", is_text},
+                                              {"board_test", is_board_test},
                                               {"phase", is_text}}};
 constexpr std::array<StatusKey, 26> kViewKeys{{{"age_ms", is_count},
                                                {"phase_ms", is_count},
@@ -359,10 +373,30 @@ std::string words_of_withheld(const Json& json) {
                              pair_at(json, "withheld_pair"));
 }
 
+std::string words_of_board_test(const Json& test) {
+    const std::string state = text_at(test, "record");
+    const std::string whose =
+        test["serial"].is_null() ? std::string()
+                                 : fmt::format(": serial {}, {}", text_at(test, "serial"),
+                                               test["date"].is_null() ? "" : text_at(test, "date"));
+    std::string differs;
+    for (const Json& name : test["differs"]) {
+        differs += fmt::format("{}{}", differs.empty() ? " (other " : ", ",
+                               escaped(name.get<std::string>(), 80));
+    }
+    return fmt::format("board test: {}{}{}\n",
+                       state == "this_configuration" ? "record for this configuration"
+                       : state == "another"          ? "record of another configuration"
+                       : state == "none"             ? "no record"
+                                                     : "record unreadable",
+                       differs.empty() ? "" : differs + ")", whose);
+}
+
 std::string words_of_guard(const Json& json) {
-    return fmt::format("{}, {} mode, axguardd {}, configuration {:.8}\n", text_at(json, "machine"),
-                       text_at(json, "mode"), text_at(json, "axguardd"),
-                       text_at(json, "configuration_sha256"));
+    return fmt::format("{}, {} mode, axguardd {}, configuration {:.8}\n{}",
+                       text_at(json, "machine"), text_at(json, "mode"), text_at(json, "axguardd"),
+                       text_at(json, "configuration_sha256"),
+                       words_of_board_test(json.at("board_test")));
 }
 
 std::string words_of_view(const Json& json) {
@@ -399,13 +433,22 @@ StatusWords words_of_init(const Json& json) {
 }  // namespace
 
 StatusLine::StatusLine(const Machine& machine, std::string_view bus, std::string_view mode,
-                       std::string_view configuration_sha256)
+                       std::string_view configuration_sha256, const FoundRecord& board_test)
     : machine_(machine) {
+    const BoardTestRecord& record = board_test.record;
+    const auto text_or_null = [](const std::string& text) {
+        return text.empty() ? Json(nullptr) : Json(text);
+    };
     const Json head{{"axguardd", AXG_VERSION},
                     {"bus", bus},
                     {"machine", machine.name.substr(0, 200)},
                     {"configuration_sha256", configuration_sha256},
-                    {"mode", mode}};
+                    {"mode", mode},
+                    {"board_test",
+                     {{"record", to_text(board_test.state)},
+                      {"serial", text_or_null(record.serial)},
+                      {"date", text_or_null(record.date)},
+                      {"differs", board_test.differs}}}};
     head_ = head.dump(-1, ' ', true, Json::error_handler_t::replace);
     head_.pop_back();  // what follows is in the same braces
 }

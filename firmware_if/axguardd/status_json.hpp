@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "core/machine/machine.hpp"
+#include "firmware_if/axguardd/board_test_record.hpp"
 #include "firmware_if/axguardd/metrics.hpp"
 #include "firmware_if/guard/why_desk.hpp"
 
@@ -21,7 +22,7 @@ class StatusLine {
   public:
     /// `machine` must outlive it.
     StatusLine(const Machine& machine, std::string_view bus, std::string_view mode,
-               std::string_view configuration_sha256);
+               std::string_view configuration_sha256, const FoundRecord& board_test = {});
 
     /// @param view  null: the guard has shown nothing yet
     /// @param why   of that view

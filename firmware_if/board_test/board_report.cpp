@@ -6,7 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
 
+#include "core/base/sincos.hpp"
 #include "firmware_if/cli/limit_text.hpp"
 
 namespace axg {
@@ -22,26 +27,71 @@ double rounded_down(double value) noexcept {
     return std::floor(value / unit) * unit;
 }
 
-/// A figure that no stop depended on is not stated: nothing is known of it.
-std::string axis_keys(const Axis& axis, std::uint32_t number, std::span<const AxisStop> stops,
-                      double reaction_s) {
+/// As the machine file has it: mm, deg. A figure that no stop depended on is not stated: nothing is
+/// known of it.
+struct MeasuredAxis {
+    std::uint32_t number = 0;
+    std::string stopping, jerk;  // empty: not stated
+};
+
+struct MeasuredKeys {
+    std::string reaction_ms, jitter_us;
+    std::vector<MeasuredAxis> axes;
+};
+
+MeasuredAxis measured_axis(const Axis& axis, std::uint32_t number, std::span<const AxisStop> stops,
+                           double reaction_s) {
     StopFigures figures{reaction_s, axis.stopping_min, axis.jerk_max};
     const std::optional<double> deceleration = fitted_deceleration(stops, number, figures);
     figures.deceleration = deceleration.value_or(figures.deceleration);
     const std::optional<double> jerk = fitted_jerk(stops, number, figures);
+    const auto shown = [&axis](const std::optional<double>& value) {
+        return value ? fmt::format("{:.6g}", rounded_down(in_axis_units(axis, *value))) : "";
+    };
+    return {number, shown(deceleration), shown(jerk)};
+}
+
+/// None: no stop was judged.
+std::optional<MeasuredKeys> measured_keys(const Machine& machine, const BoardTestResult& result) {
+    if (result.stops.empty()) {
+        return std::nullopt;
+    }
+    // Rounded up to 0.1 ms; then each figure is found with the ones before it.
+    const double reaction_s = std::ceil(result.reaction_s * 1e4) * 1e-4;
+    MeasuredKeys out{fmt::format("{:.1f}", reaction_s * 1e3),
+                     fmt::format("{:.0f}", std::ceil(result.sync.jitter_us_max)),
+                     {}};
+    for (std::uint32_t i = 0; i < machine.axes.size(); ++i) {
+        const bool is_tested = std::any_of(result.stops.begin(), result.stops.end(),
+                                           [i](const AxisStop& stop) { return stop.axis == i; });
+        if (is_tested) {
+            out.axes.push_back(measured_axis(machine.axes[i], i, result.stops, reaction_s));
+        }
+    }
+    return out;
+}
+
+std::string axis_keys(const Axis& axis, const MeasuredAxis& measured) {
     const char* const unit = axis.kind == AxisKind::rotary ? "deg" : "mm";
     std::string keys;
-    if (deceleration) {
-        keys = fmt::format("stopping_{}_s2: {:.6g}", unit,
-                           rounded_down(in_axis_units(axis, *deceleration)));
+    if (!measured.stopping.empty()) {
+        keys = fmt::format("stopping_{}_s2: {}", unit, measured.stopping);
     }
-    if (jerk) {
-        keys += fmt::format("{}jerk_{}_s3: {:.6g}", keys.empty() ? "" : ", ", unit,
-                            rounded_down(in_axis_units(axis, *jerk)));
+    if (!measured.jerk.empty()) {
+        keys += fmt::format("{}jerk_{}_s3: {}", keys.empty() ? "" : ", ", unit, measured.jerk);
     }
-    const bool has_all = deceleration && (jerk || !has_jerk_limit(axis));
+    const bool has_all =
+        !measured.stopping.empty() && (!measured.jerk.empty() || !has_jerk_limit(axis));
     return fmt::format("  {}: {{{}}}{}\n", axis.name, keys,
                        has_all ? "" : "  # larger values not reached: test with a faster feed");
+}
+
+/// As config reads it; rad for a rotary axis.
+void take_limit(const Axis& axis, const std::string& text, double& limit) {
+    if (!text.empty()) {
+        const double value = std::stod(text);
+        limit = axis.kind == AxisKind::rotary ? value * kPi / 180.0 : value;
+    }
 }
 
 }  // namespace
@@ -91,28 +141,32 @@ std::string report_text(const BoardTestResult& result) {
 }
 
 std::string machine_keys(const Machine& machine, const BoardTestResult& result) {
-    if (result.stops.empty()) {
+    const std::optional<MeasuredKeys> keys = measured_keys(machine, result);
+    if (!keys) {
         return {};
     }
-    // Rounded up to 0.1 ms; then each figure is found with the ones before it.
-    const double reaction_s = std::ceil(result.reaction_s * 1e4) * 1e-4;
-    std::string out;
-    auto to = std::back_inserter(out);
-    fmt::format_to(
-        to,
+    std::string out = fmt::format(
         "# axguardd board-test: figures that {} judged stops fit, all of them together.\n"
         "# Not tested stops may take longer: add what the firmware's design adds. The\n"
         "# jitter has that of the bus and of this computer in it. The period was {:.1f} us.\n"
-        "guard:\n  board_reaction_ms: {:.1f}\n  latch_jitter_us: {:.0f}\naxes:\n",
-        result.stops.size(), result.sync.mean_us, reaction_s * 1e3,
-        std::ceil(result.sync.jitter_us_max));
-    for (std::uint32_t i = 0; i < machine.axes.size(); ++i) {
-        const bool is_tested = std::any_of(result.stops.begin(), result.stops.end(),
-                                           [i](const AxisStop& stop) { return stop.axis == i; });
-        if (!is_tested) {
-            continue;
+        "guard:\n  board_reaction_ms: {}\n  latch_jitter_us: {}\naxes:\n",
+        result.stops.size(), result.sync.mean_us, keys->reaction_ms, keys->jitter_us);
+    for (const MeasuredAxis& axis : keys->axes) {
+        out += axis_keys(machine.axes[axis.number], axis);
+    }
+    return out;
+}
+
+Machine with_measured_keys(const Machine& machine, const BoardTestResult& result) {
+    Machine out = machine;
+    if (const std::optional<MeasuredKeys> keys = measured_keys(machine, result)) {
+        out.guard.board_reaction_s = std::stod(keys->reaction_ms) / 1e3;
+        out.guard.latch_jitter_s = std::stod(keys->jitter_us) / 1e6;
+        for (const MeasuredAxis& measured : keys->axes) {
+            Axis& axis = out.axes[measured.number];
+            take_limit(axis, measured.stopping, axis.stopping_min);
+            take_limit(axis, measured.jerk, axis.jerk_max);
         }
-        out += axis_keys(machine.axes[i], i, result.stops, reaction_s);
     }
     return out;
 }

@@ -18,6 +18,9 @@ namespace axg {
 /// tested. YAML, as the machine file has them; empty: no stop was judged.
 [[nodiscard]] std::string machine_keys(const Machine& machine, const BoardTestResult& result);
 
+/// The machine whose file has these keys in place of its own: number by number as they are printed.
+[[nodiscard]] Machine with_measured_keys(const Machine& machine, const BoardTestResult& result);
+
 [[nodiscard]] std::string describe_board_test(const Machine& machine, const std::string& bus,
                                               const BoardTestResult& result);
 

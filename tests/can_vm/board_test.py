@@ -20,7 +20,8 @@ def play(broken, *options):
     test = subprocess.Popen(
         [BUILD / "axguardd", "board-test", machine, "--mesh-root", MESHES, "--bus", "vcan0",
          "--local-board", "--state-dir", "/run", "--yes", "-o", "/run/report.json", "--write",
-         "/run/keys.yaml", *options], stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+         "/run/keys.yaml", "--serial", "MB7-0012", *options],
+        stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
     RUNNING.append(test)
     said = []
     for line in test.stderr:  # the person does as told
@@ -55,7 +56,10 @@ def good_board_passes():
     expect(report["passed"] > 35, "few rules were judged", words)
     keys = pathlib.Path("/run/keys.yaml").read_text()
     expect("board_reaction_ms:" in keys and "latch_jitter_us:" in keys and "  X: {" in keys, keys)
-    print(words, keys, flush=True)
+    record = json.loads(pathlib.Path("/run/vcan0.board-test.json").read_text())
+    expect(record["serial"] == "MB7-0012" and record["passed"] == report["passed"] and
+           set(record["hashes"]) == {"model", "kinematics", "tools", "limits"}, record)
+    print(words, keys, record, flush=True)
 
 
 def bad_board_is_named():

@@ -96,6 +96,33 @@ TEST(BoardTestCommand, RefusesAReportThatIsNoRegularFile) {
     }
 }
 
+TEST(BoardTestCommand, ARecordNeedsASerialAndAPlaceBeforeAnythingMoves) {
+    const std::string paper = test::content_of(test::kPaperMachine);
+    const std::pair<std::vector<std::string>, const char*> refusals[] = {
+        {{"--write", "keys.yaml"}, "Pass its serial number with --serial"},
+        {{"--write", "keys.yaml", "--serial", ""}, "Pass its serial number with --serial"},
+        {{"--write", "keys.yaml", "--serial", "a\tb"}, "--serial: no serial"},
+        {{"--serial", "MB7-0012"}, "--serial needs --write"}};
+    for (const auto& [options, words] : refusals) {
+        const test::Workshop shop;
+        std::vector<std::string> more = options;
+        more.emplace_back("--yes");
+        if (more[0] == "--write") {
+            more[1] = shop.file(more[1]);
+        }
+        const Told told = board_test(shop, paper, more);
+        EXPECT_EQ(told.code, kExitUsage) << told.words;
+        EXPECT_NE(told.words.find(words), std::string::npos) << told.words;
+    }
+    const test::Workshop shop;
+    ASSERT_EQ(mkfifo(shop.file("nocan9.board-test.json").c_str(), 0600), 0);
+    const Told told = board_test(
+        shop, paper, {"--write", shop.file("keys.yaml"), "--serial", "MB7-0012", "--yes"});
+    EXPECT_EQ(told.code, kExitUsage) << told.words;
+    EXPECT_NE(told.words.find("board-test.json: is not a regular file"), std::string::npos)
+        << told.words;
+}
+
 TEST(BoardTestCommand, RefusesACaseThatCannotBePlayed) {
     const char* const names[] = {"cap", "hold", "jog", "run_in_jog"};
     for (const std::string name : names) {

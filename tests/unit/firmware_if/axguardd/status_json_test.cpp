@@ -33,7 +33,7 @@ class StatusLineTest : public testing::Test {
     }
     std::string text(const LiveView* shown) const {
         std::array<char, kStatusLineBytesMax> room{};
-        const StatusLine line(machine, "can0", "stoppable", std::string(64, 'a'));
+        const StatusLine line(machine, "can0", "stoppable", std::string(64, 'a'), board_test);
         return {room.data(), line.write(shown, why, kNowUs, room)};
     }
     test::Json json() const { return test::Json::parse(text(&view)); }
@@ -68,6 +68,7 @@ class StatusLineTest : public testing::Test {
     Machine machine = motion_test_machine();
     LiveView view;
     GuardWhy why;
+    FoundRecord board_test;
 };
 
 TEST_F(StatusLineTest, SaysWhatTheGuardIsAndWhere) {
@@ -258,6 +259,24 @@ TEST_F(StatusLineTest, AHeldBusThreadIsLate) {
     EXPECT_EQ(words().exit_code, kExitDeadline);
     stop(GuardFault::input, StopReason::none);
     EXPECT_EQ(words().exit_code, kExitCan) << "that of the stop";
+}
+
+TEST_F(StatusLineTest, SaysWhetherTheBoardWasTestedForThisConfiguration) {
+    EXPECT_EQ(json()["board_test"]["record"], "none");
+    EXPECT_TRUE(json()["board_test"]["serial"].is_null());
+    EXPECT_NE(words().text.find("board test: no record\n"), std::string::npos) << words().text;
+    board_test.record.serial = std::string(kSerialCharactersMax, '"');
+    board_test.record.date = "2026-11-30T01:02:03Z";
+    board_test.state = RecordState::this_configuration;
+    EXPECT_EQ(json()["board_test"]["serial"], board_test.record.serial);
+    EXPECT_NE(words().text.find("record for this configuration: serial \"\""), std::string::npos)
+        << words().text;
+    board_test.state = RecordState::another;
+    board_test.differs = {"model", "limits"};
+    EXPECT_EQ(json()["board_test"]["differs"][1], "limits");
+    EXPECT_NE(words().text.find("record of another configuration (other model, limits): serial "),
+              std::string::npos)
+        << words().text;
 }
 
 TEST_F(StatusLineTest, TheExitCodeIsThatOfTheStop) {
