@@ -175,7 +175,7 @@ typedef struct axg_axis {
 
 // What a board has to know of the machine file; the names are those of axg_board_options.
 typedef struct axg_terms {
-    uint32_t period_us, jitter_us, reaction_us;
+    uint32_t period_us, jitter_us, reaction_us;  // jitter_us: and most of can.latched_age_us
     uint32_t permit_id, stop_id;
     uint32_t hashes_in_id, hashes_out_id;      // 0: hashes are not compared
     uint32_t operator_in_id, operator_out_id;  // of a panel's messages, and of the status

@@ -22,6 +22,7 @@ constexpr WholeRange kCanId{0x001, 0x7FF};
 constexpr std::size_t kFdAxesMax = 13;            // 64 bytes: header and 13 positions of 32 bits
 constexpr std::size_t kLookAheadAxesMax = 7;      // 64 bytes: header and two positions each
 constexpr std::uint32_t kClassicalToolMax = 255;  // one byte of the last frame
+constexpr std::uint32_t kAgePeriodsMax = 10;      // of positions at their latch
 constexpr std::uint32_t kHashesIn = 0x582, kHashesOut = 0x602;
 
 /// Largest position a frame of ours can say: 24 bits of 1 um or 0.0001 degrees, 32 bits of 0.1 um
@@ -266,49 +267,74 @@ void read_arrival_jitter(MapReader& reader, CanLayout& can) {
     }
 }
 
-void read_period(MapReader& reader, CanLayout& can) {
-    reader.whole("sample_us", Need::optional, {50, 100'000}, can.sample_us);
+void read_period(MapReader& reader, MachineDraft& draft) {
+    CanLayout& can = draft.machine.can;
+    draft.machine.states.sample_us =
+        reader.whole("sample_us", Need::optional, {50, 100'000}, can.sample_us);
     read_arrival_jitter(reader, can);
 }
 
-/// One number, or the least and the most.
+/// One number, or the least and the most. False: `ends` does not hold what the key has.
+bool read_ends(MapReader& reader, const char* key, WholeRange range, FaultList& faults,
+               std::array<std::uint32_t, 2>& ends) {
+    const std::string wanted = "an integer from " + std::to_string(range.min) + " to " +
+                               std::to_string(range.max) + ", or two of them: [least, most]";
+    const YamlNode* node = reader.find(key, Need::optional, wanted);
+    if (node == nullptr) {
+        return false;
+    }
+    const bool is_list = node->kind == YamlNode::Kind::sequence;
+    if (is_list && node->entries.size() != 2) {
+        reader.report(key, "a list of " + std::to_string(node->entries.size()), wanted);
+        return false;
+    }
+    const std::string path = reader.path_of(key);
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+        const YamlNode& one = is_list ? node->entries[i].value : *node;
+        if (!read_whole({one, path, faults}, range, false, ends[i])) {
+            return false;
+        }
+    }
+    if (ends[0] > ends[1]) {
+        reader.report(key, shown(*node), "[least, most], the least first");
+        return false;
+    }
+    return true;
+}
+
 void read_permit_samples(MapReader& reader, MachineDraft& draft) {
     CanLayout& can = draft.machine.can;
     // A hole of 9 classical samples counts as late already, and one of 16 looks like none. With one
     // sample no permit is ever a period ahead of its end.
     const WholeRange range{2, can.format == CanFormat::classical ? 12U : 15U};
-    const std::string wanted = "an integer from " + std::to_string(range.min) + " to " +
-                               std::to_string(range.max) + ", or two of them: [least, most]";
     can.permit_samples = can.permit_version != 2       ? PermitSamples{}
                          : can.look_ahead_samples != 0 ? kPermitSamplesLonger
                                                        : kPermitSamplesUsual;
-    const YamlNode* node = reader.find("permit_samples", Need::optional, wanted);
-    draft.states_permit_samples = node != nullptr;
-    if (node == nullptr) {
-        return;
-    }
-    const bool is_list = node->kind == YamlNode::Kind::sequence;
-    if (is_list && node->entries.size() != 2) {
-        reader.report("permit_samples", "a list of " + std::to_string(node->entries.size()),
-                      wanted);
-        return;
-    }
-    const std::string path = reader.path_of("permit_samples");
+    draft.states_permit_samples = reader.has("permit_samples");
     std::array<std::uint32_t, 2> ends{};
-    for (std::size_t i = 0; i < ends.size(); ++i) {
-        const YamlNode& one = is_list ? node->entries[i].value : *node;
-        if (!read_whole({one, path, draft.faults}, range, false, ends[i])) {
-            return;
-        }
+    if (!read_ends(reader, "permit_samples", range, draft.faults, ends)) {
+        return;
     }
-    if (ends[0] > ends[1]) {
-        reader.report("permit_samples", shown(*node), "[least, most], the least first");
-    } else if (ends[0] != ends[1] && can.permit_version != 2) {
-        reader.report("permit_samples", shown(*node) + " with permit: 1",
-                      "one integer; only a permit of version 2 carries its own n");
+    if (ends[0] != ends[1] && can.permit_version != 2) {
+        reader.report(
+            "permit_samples",
+            "[" + std::to_string(ends[0]) + ", " + std::to_string(ends[1]) + "] with permit: 1",
+            "one integer; only a permit of version 2 carries its own n");
     } else {
         can.permit_samples = {static_cast<std::uint8_t>(ends[0]),
                               static_cast<std::uint8_t>(ends[1])};
+    }
+}
+
+/// A board stamps at the latch; a drive may answer with the value of the SYNC before.
+void read_latched_age(MapReader& reader, MachineDraft& draft) {
+    CanLayout& can = draft.machine.can;
+    can.latched_age = {0, can.format == CanFormat::cia402 ? can.sample_us : 0};
+    std::array<std::uint32_t, 2> ends{};
+    draft.machine.states.latched_age_us = read_ends(
+        reader, "latched_age_us", {0, kAgePeriodsMax * can.sample_us}, draft.faults, ends);
+    if (draft.machine.states.latched_age_us) {
+        can.latched_age = {ends[0], ends[1]};
     }
 }
 
@@ -429,6 +455,7 @@ void read_can(MapReader& top, MachineDraft& draft) {
                       "data_ids",
                       "permit",
                       "permit_samples",
+                      "latched_age_us",
                       "hashes",
                       "stale_after_us",
                       "frozen_samples",
@@ -452,13 +479,14 @@ void read_can(MapReader& top, MachineDraft& draft) {
     reader.choice("format", Need::optional, kSources, source);
     draft.can_source = static_cast<CanSource>(source);
     draft.machine.can.format = format_of(draft.can_source);
-    read_period(reader, draft.machine.can);
+    read_period(reader, draft);
     read_signals(reader, draft);
     read_look_ahead(reader, draft);
     read_dbc(reader, draft);
     read_drives(reader, draft);
     read_permit_version(reader, draft.machine.can);
     read_permit_samples(reader, draft);
+    read_latched_age(reader, draft);
     read_receiver_rules(reader, draft.machine.can);
     read_hashes(reader, draft.machine.can);
     read_frame_ids(reader, draft);

@@ -194,6 +194,10 @@ void add_can(Lines& lines, const CanLayout& can) {
     if (can.permit_samples.most != can.permit_samples.least) {
         lines.add("can.permit_samples_most", can.permit_samples.most);
     }
+    if (can.latched_age != ValueAge{}) {
+        lines.add("can.latched_age_us", can.latched_age.least_us);
+        lines.add("can.latched_age_us_most", can.latched_age.most_us);
+    }
     lines.add("can.counter_delta_max", can.counter_delta_max);
     lines.add("can.sync_counter_init", can.sync_counter_init);
     lines.add("can.stale_after_us", can.stale_after_us);
@@ -301,7 +305,7 @@ ConfigurationHashes configuration_hashes(const Machine& machine, const MachineMe
     const std::array<Part, kHashParts> parts{
         Part{{"pair.", "exclusion."}, &meshes.bodies}, Part{{"bodies."}},
         Part{{"tools.", "first_tool "}, &meshes.tools},
-        Part{{"axes.", "guard.", "can.sample_us ", "can.permit_samples"}}};
+        Part{{"axes.", "guard.", "can.sample_us ", "can.permit_samples", "can.latched_age_us"}}};
     const std::string text = effective_text(machine);
     ConfigurationHashes out;
     for (std::size_t i = 0; i < kHashParts; ++i) {

@@ -219,6 +219,11 @@ void fill_drives(YamlNode& drives) {
     }
 }
 
+/// One number where both are the same.
+YamlNode ends_of(std::uint32_t least, std::uint32_t most) {
+    return least == most ? value_of(least) : list_of({value_of(least), value_of(most)});
+}
+
 void fill_can(YamlNode& map, const CanLayout& can) {
     const bool is_native = can.format == CanFormat::classical || can.format == CanFormat::fd;
     fill(map, "format", value_of("classical"));
@@ -229,11 +234,8 @@ void fill_can(YamlNode& map, const CanLayout& can) {
     }
     fill(map, "permit", value_of(std::uint32_t{can.permit_version}));
     fill(map, "hashes", value_of(can.hashes_in_id != 0 ? "required" : "none"));
-    const PermitSamples samples = can.permit_samples;
-    fill(map, "permit_samples",
-         samples.least == samples.most ? value_of(std::uint32_t{samples.least})
-                                       : list_of({value_of(std::uint32_t{samples.least}),
-                                                  value_of(std::uint32_t{samples.most})}));
+    fill(map, "permit_samples", ends_of(can.permit_samples.least, can.permit_samples.most));
+    fill(map, "latched_age_us", ends_of(can.latched_age.least_us, can.latched_age.most_us));
     fill(map, "stale_after_us", value_of(can.stale_after_us));
     fill(map, "frozen_samples", value_of(can.frozen_samples));
     fill(map, "counter_delta_max", value_of(std::uint32_t{can.counter_delta_max}));

@@ -146,11 +146,14 @@ void read_guard(MapReader& top, MachineDraft& draft) {
     if (reader.choice("obeyed_by", Need::optional, kObeyedBy, who)) {
         out.obeyed_by = static_cast<ObeyedBy>(who);
     }
+    StatedPromises& states = draft.machine.states;
     double value = 0;
-    if (reader.number("board_reaction_ms", Need::optional, {0, 1000}, value)) {
+    states.board_reaction_ms = reader.number("board_reaction_ms", Need::optional, {0, 1000}, value);
+    if (states.board_reaction_ms) {
         out.board_reaction_s = value / 1e3;
     }
-    if (reader.number("latch_jitter_us", Need::optional, {0, 10'000}, value)) {
+    states.latch_jitter_us = reader.number("latch_jitter_us", Need::optional, {0, 10'000}, value);
+    if (states.latch_jitter_us) {
         out.latch_jitter_s = value / 1e6;
     }
     check_sync_jitter(reader, draft.machine);
@@ -167,7 +170,8 @@ void read_guard(MapReader& top, MachineDraft& draft) {
     }
     constexpr std::array<std::string_view, 2> kReversals{"none", "jerk_limited"};
     std::size_t reversal = 0;
-    if (reader.choice("stop_reversal", Need::optional, kReversals, reversal)) {
+    states.stop_reversal = reader.choice("stop_reversal", Need::optional, kReversals, reversal);
+    if (states.stop_reversal) {
         out.stop_reversal = static_cast<StopReversal>(reversal);
     }
     constexpr std::array<std::string_view, 2> kBroken{"stop", "report"};

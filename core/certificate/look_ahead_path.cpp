@@ -200,23 +200,52 @@ double LookAheadPath::speed_in_step(std::uint32_t axis, std::uint64_t sample) co
     return std::min(speed, promised.speed_max * kLongestPeriod) * kUp;
 }
 
+/// The points that a position may have been latched between, by its age.
+LookAheadPath::Latched LookAheadPath::latched_at(std::uint64_t sample) const noexcept {
+    const ValueAge age = machine_->can.latched_age;
+    const std::uint32_t period_us = machine_->can.sample_us;
+    const std::uint64_t most = (std::uint64_t{age.most_us} + period_us - 1) / period_us;
+    return {sample - most, sample - age.least_us / period_us};  // before 0 nothing is held
+}
+
+/// How far a position is from every one of the path in there, along the chords. Of no number, no
+/// number.
+double LookAheadPath::off_path(std::uint32_t axis, double position,
+                               const Latched& at) const noexcept {
+    double off = step(axis, point(at.first).position[axis], position);  // unwrapped from here on
+    double low = off, high = off;
+    for (std::uint64_t sample = at.first + 1; sample <= at.last; ++sample) {
+        off -= step(axis, point(sample - 1).position[axis], point(sample).position[axis]);
+        low = std::min(low, off);
+        high = std::max(high, off);
+    }
+    const double beyond = low > 0 ? low : -high;
+    return low <= 0 && high >= 0 ? 0 : beyond;
+}
+
 bool LookAheadPath::keeps_to(const AxisSnapshot& snapshot) const noexcept {
-    if (!holds(snapshot.sample)) {
+    const Latched at = latched_at(snapshot.sample);
+    if (!holds(at.first) || !holds(at.last)) {
         return true;
     }
-    const Point& said = point(snapshot.sample);
+    const bool has_neighbours = holds(at.first - 1) && holds(at.last + 1);
+    // What the period may be off moves the points that an age counts back to.
+    const double loose_s =
+        machine_->guard.latch_jitter_s + kPeriodShare * machine_->can.latched_age.most_us * 1e-6;
     for (std::uint32_t i = 0; i < machine_->axes.size(); ++i) {
         const Axis& axis = machine_->axes[i];
-        double speed = axis.speed_max;
-        if (holds(snapshot.sample - 1) && holds(snapshot.sample + 1)) {
-            speed =
-                std::max(speed_in_step(i, snapshot.sample), speed_in_step(i, snapshot.sample + 1));
+        double speed = has_neighbours ? 0 : axis.speed_max, bridge = 0;
+        for (std::uint64_t k = at.first; has_neighbours && k <= at.last + 1; ++k) {
+            speed = std::max(speed, speed_in_step(i, k));
         }
-        const double bridge = said.is_bridge ? bulge(i, snapshot.sample) : 0;
+        for (std::uint64_t k = at.first; k <= at.last; ++k) {
+            const bool is_on_chord = k > at.first || point(k).is_bridge;
+            bridge = is_on_chord ? std::max(bridge, bulge(i, k)) : bridge;
+        }
         // Half a count of either frame, and what a position on the wire is off.
         const double allowed = axis.following_error + axis.position_error + options_.count[i] +
-                               speed * machine_->guard.latch_jitter_s + bridge + kPositionUp;
-        if (!(std::fabs(step(i, said.position[i], snapshot.position[i])) <= allowed)) {
+                               speed * loose_s + bridge + kPositionUp;
+        if (!(off_path(i, snapshot.position[i], at) <= allowed)) {
             return false;
         }
     }

@@ -119,6 +119,12 @@ class LookAheadPath {
     [[nodiscard]] double step(std::uint32_t axis, double from, double to) const noexcept;
     [[nodiscard]] double speed_in_step(std::uint32_t axis, std::uint64_t sample) const noexcept;
     [[nodiscard]] double bulge(std::uint32_t axis, std::uint64_t sample) const noexcept;
+    struct Latched {
+        std::uint64_t first, last;  // samples
+    };
+    [[nodiscard]] Latched latched_at(std::uint64_t sample) const noexcept;
+    [[nodiscard]] double off_path(std::uint32_t axis, double position,
+                                  const Latched& at) const noexcept;
     struct Span {
         double low, high;
     };

@@ -36,7 +36,7 @@ void note_snapshot(MotionHistory& history, const AxisSnapshot& snapshot,
 struct SampleErrors {
     double period_s = 0;           // nominal
     double period_share = 0;       // the period may be off by this share, all samples alike
-    double latch_jitter_s = 0;     // and the time between two samples by this
+    double latch_jitter_s = 0;     // and the time between the positions of two samples by this
     double position = 0;           // of a reported position against the true one at its latch
     bool is_jerk_limited = false;  // the axis keeps jerk_max in free motion too
 };

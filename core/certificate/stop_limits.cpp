@@ -10,6 +10,18 @@ namespace {
 
 constexpr double kUp = 1.0 + 0x1p-40;  // more than the roundings of any formula below
 
+/// Between two latches.
+double latch_jitter_seconds(const Machine& machine) noexcept {
+    const double stated_s = machine.guard.latch_jitter_s;
+    if (machine.can.format != CanFormat::signals) {
+        return stated_s;
+    }
+    // Frames of signals say nothing about the instant: it is known to their jitter, and the anchor
+    // that numbers them leans by the share of a period.
+    const double period_s = machine.can.sample_us * 1e-6;
+    return std::max(stated_s, arrival_jitter_us_of(machine.can) * 1e-6 + period_s * kPeriodShare);
+}
+
 }  // namespace
 
 AxisLimits stop_limits(const Machine& machine, std::uint32_t axis) noexcept {
@@ -27,26 +39,26 @@ double capped_speed(const Axis& axis, double share) noexcept {
     return std::min(axis.speed_max, (share * axis.speed_max + swing) * kUp);
 }
 
+AgeSeconds age_seconds(const Machine& machine) noexcept {
+    // A register that holds the value of the SYNC before is a period of the board old.
+    constexpr double kLongest = 1e-6 * (1 + kPeriodShare);
+    const ValueAge age = machine.can.latched_age;
+    return {.most = age.most_us * kLongest, .spread = (age.most_us - age.least_us) * kLongest};
+}
+
 double free_seconds(const Machine& machine, std::uint32_t samples) noexcept {
     const double period_s = machine.can.sample_us * 1e-6;
-    return samples * period_s * (1 + kPeriodShare) + sample_errors(machine, 0, 0).latch_jitter_s +
-           machine.guard.board_reaction_s;
+    return samples * period_s * (1 + kPeriodShare) + latch_jitter_seconds(machine) +
+           machine.guard.board_reaction_s + age_seconds(machine).most;
 }
 
 SampleErrors sample_errors(const Machine& machine, std::uint32_t axis, double count) noexcept {
-    const GuardRules& guard = machine.guard;
-    const double period_s = machine.can.sample_us * 1e-6;
-    // Frames of signals say nothing about the instant: it is known to their jitter, and the anchor
-    // that numbers them leans by the share of a period.
-    const bool has_instant = machine.can.format != CanFormat::signals;
-    const double arrival_s = arrival_jitter_us_of(machine.can) * 1e-6 + period_s * kPeriodShare;
-    return {
-        .period_s = period_s,
-        .period_share = kPeriodShare,
-        .latch_jitter_s =
-            has_instant ? guard.latch_jitter_s : std::max(guard.latch_jitter_s, arrival_s),
-        .position = machine.axes[axis].position_error + machine.axes[axis].following_error + count,
-        .is_jerk_limited = guard.free_jerk_limited};
+    const Axis& of = machine.axes[axis];
+    return {.period_s = machine.can.sample_us * 1e-6,
+            .period_share = kPeriodShare,
+            .latch_jitter_s = latch_jitter_seconds(machine) + age_seconds(machine).spread,
+            .position = of.position_error + of.following_error + count,
+            .is_jerk_limited = machine.guard.free_jerk_limited};
 }
 
 void put_reach(const ReachRange& range, std::uint32_t axis, JointBox& box) noexcept {

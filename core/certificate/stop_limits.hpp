@@ -13,8 +13,16 @@
 
 namespace axg {
 
-/// From the instant a sample was latched until the board must have begun to brake, s: the permit
-/// for it, valid for so many samples, has run out, and the board has reacted.
+/// How old positions are at their latch, s, in the longest periods of the board.
+struct AgeSeconds {
+    double most = 0;
+    double spread = 0;  // by which one may be older than another
+};
+[[nodiscard]] AgeSeconds age_seconds(const Machine& machine) noexcept;
+
+/// From the instant of a sample's positions until the board must have begun to brake, s: they had
+/// an age at the latch, the permit for them, valid for so many samples, has run out, and the board
+/// has reacted.
 [[nodiscard]] double free_seconds(const Machine& machine, std::uint32_t samples) noexcept;
 
 /// Errors of the positions that a board's frames report.

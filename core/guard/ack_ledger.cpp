@@ -88,16 +88,28 @@ AxisCaps AckLedger::highest_from(std::uint64_t number) const noexcept {
     return caps;
 }
 
-CapFacts AckLedger::note_sample(std::optional<std::uint8_t> nibble, std::uint64_t lost) noexcept {
+/// Of every permit from the oldest one on that any of the last samples names.
+AxisCaps AckLedger::highest_in(std::uint64_t samples) const noexcept {
+    std::uint64_t oldest = samples <= named_.size() ? newest_ : 0;
+    for (std::uint64_t i = 0; i < std::min<std::uint64_t>(samples, named_.size()); ++i) {
+        oldest = std::min(oldest, named_[(samples_ + named_.size() - 1 - i) % named_.size()]);
+    }
+    return oldest == 0 ? rapid_caps() : highest_from(oldest);
+}
+
+CapFacts AckLedger::note_sample(std::optional<std::uint8_t> nibble, std::uint64_t lost,
+                                std::uint32_t age_samples) noexcept {
     const bool is_same = nibble && last_ == nibble;
     const AckedCaps acked = is_same ? note_ack(nibble) : note_recent_ack(nibble, lost);
     last_ = nibble;
     const bool is_known = acked.status == AckStatus::known;
-    named_[samples_++ % kSamples] = is_known ? oldest_ : 0;
-    const std::uint64_t oldest = *std::min_element(named_.begin(), named_.end());
+    named_[samples_++ % named_.size()] = is_known ? oldest_ : 0;
+    const bool has_age = age_samples != 0;
     return {.status = acked.status,
-            .acked = is_known ? acked.caps : rapid_caps(),
-            .since = oldest == 0 ? rapid_caps() : highest_from(oldest)};
+            .acked = !is_known ? rapid_caps()
+                     : has_age ? highest_in(1 + age_samples)
+                               : acked.caps,
+            .since = highest_in(kSamples + age_samples)};
 }
 
 }  // namespace axg

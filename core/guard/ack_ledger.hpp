@@ -42,11 +42,16 @@ struct AckedCaps {
 /// What is known with a sample of the caps that its board keeps.
 struct CapFacts {
     AckStatus status = AckStatus::none;
+    // The highest that it can have kept since the instant of its positions. Where they have no age
+    // that is what the sample names, else every permit from the one named by a sample before it on.
     AxisCaps acked = rapid_caps();
-    // The highest that it can have kept since 16 samples before: of every permit from the one that
-    // was named then on. A sample that names none lets every axis run at rapid.
+    // And since the instant of positions 16 samples before. A sample that names none lets every
+    // axis run at rapid.
     AxisCaps since = rapid_caps();
 };
+
+/// Positions that were latched earlier than so many samples before: every axis may run at rapid.
+inline constexpr std::uint32_t kAgeSamplesMax = 16;
 
 class AckLedger {
   public:
@@ -66,8 +71,9 @@ class AckLedger {
     /// Once a sample, of a board that names such a permit first, and may go on naming it however
     /// long it slows down; with what follows from the 16 samples before it. Source:
     /// docs/reference/board.md, rule (i).
-    [[nodiscard]] CapFacts note_sample(std::optional<std::uint8_t> nibble,
-                                       std::uint64_t lost = 0) noexcept;
+    /// @param age_samples  a sample so many before was latched no later than these positions
+    [[nodiscard]] CapFacts note_sample(std::optional<std::uint8_t> nibble, std::uint64_t lost = 0,
+                                       std::uint32_t age_samples = 0) noexcept;
 
     /// So many permits were sent after the oldest one that the last ack may mean.
     [[nodiscard]] std::uint64_t behind() const noexcept { return newest_ - oldest_; }
@@ -76,14 +82,16 @@ class AckLedger {
     static constexpr std::uint64_t kNibbles = 16, kKept = 256, kSamples = 17;
 
     [[nodiscard]] AxisCaps highest_from(std::uint64_t number) const noexcept;
+    [[nodiscard]] AxisCaps highest_in(std::uint64_t samples) const noexcept;
 
     std::array<AxisCaps, kKept> kept_{};          // the newest permits, by their number
     std::array<AxisCaps, kNibbles> forgotten_{};  // the highest caps of those before, by nibble
     std::array<std::uint64_t, kNibbles> forgotten_last_{};  // the newest of each
     // Numbers from kKept on, so that they agree with the live counter; 0: none was sent.
     std::uint64_t newest_ = 0, first_ = 0;
-    std::uint64_t oldest_ = 0;                     // that the last ack may mean
-    std::array<std::uint64_t, kSamples> named_{};  // the same of the last samples; 0: none
+    std::uint64_t oldest_ = 0;  // that the last ack may mean
+    // The same of the last samples; 0: none.
+    std::array<std::uint64_t, kSamples + kAgeSamplesMax> named_{};
     std::uint64_t samples_ = 0;
     std::optional<std::uint8_t> last_{};  // what the last sample named
 };

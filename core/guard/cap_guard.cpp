@@ -28,7 +28,17 @@ double cap_answer_seconds(const Machine& machine) noexcept {
     // A planner that averages its commands has half of the acceleration.
     // What was announced before the order is followed as it was announced.
     const double periods = kAnswerPeriods + machine.can.look_ahead_samples;
-    return machine.guard.cap_lead_s + 2 * slowest_s + periods * machine.can.sample_us * 1e-6;
+    return machine.guard.cap_lead_s + 2 * slowest_s + periods * machine.can.sample_us * 1e-6 +
+           age_seconds(machine).most;
+}
+
+std::uint32_t age_samples(const Machine& machine) noexcept {
+    if (machine.can.latched_age.most_us == 0) {
+        return 0;
+    }
+    const double shortest_s = machine.can.sample_us * 1e-6 * (1 - kPeriodShare);
+    const double most_s = age_seconds(machine).most + machine.guard.latch_jitter_s;
+    return static_cast<std::uint32_t>(std::ceil(most_s / shortest_s));
 }
 
 AxisCaps CapGuard::bound_caps(const CapOrder& order) const noexcept {
@@ -56,8 +66,8 @@ bool CapGuard::is_too_fast(std::uint32_t axis, const Seen& before) const noexcep
     const double speed = speed_of(of, facts_.since[axis]);
     const double time_s =
         static_cast<double>(last.sample - before.sample) * machine_->can.sample_us * 1e-6;
-    const double most =
-        speed * (time_s * (1 + kPeriodShare) + machine_->guard.latch_jitter_s) + 2 * error_[axis];
+    const double jitter_s = sample_errors(*machine_, axis, 0).latch_jitter_s;
+    const double most = speed * (time_s * (1 + kPeriodShare) + jitter_s) + 2 * error_[axis];
     double way = std::fabs(last.position[axis] - before.position[axis]);
     if (of.unlimited) {
         way = std::fabs(way - 2 * kPi * std::round(way / (2 * kPi)));

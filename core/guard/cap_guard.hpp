@@ -21,6 +21,9 @@ namespace axg {
 /// From an order to slow down until the samples acknowledge it, s, at the latest.
 [[nodiscard]] double cap_answer_seconds(const Machine& machine) noexcept;
 
+/// A sample so many before was latched no later than the positions of one; 0: they have no age.
+[[nodiscard]] std::uint32_t age_samples(const Machine& machine) noexcept;
+
 class CapGuard {
   public:
     /// `machine` must outlive it.

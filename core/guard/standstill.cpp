@@ -78,6 +78,7 @@ StandstillRules standstill_rules(const Machine& machine, std::span<const double>
     out.axis_count = static_cast<std::uint32_t>(machine.axes.size());
     out.gap_samples_max = period_s > kHolesPeriodS ? 1 : 1 + kHoleSamples;
     out.age_us_max = machine.can.stale_after_us;
+    out.latched_age_us = std::llround(std::ceil(age_seconds(machine).most * 1e6));
     out.is_reported = is_told;
     double window_s = std::max(
         {kWindowS, is_told ? 0.0 : kWindowUntoldS, kStrides * std::max(period_s, kStrideS)});
@@ -118,7 +119,7 @@ void note_standstill(Standstill& state, const StandstillRules& rules, const Axis
         state.since = sample;
     }
     if (!can_stand(rules) || !is_reported_still || !is_quiet(rules, snapshot) ||
-        snapshot.latched_us <= state.after_us) {
+        snapshot.latched_us - rules.latched_age_us <= state.after_us) {
         begin_standstill(state, state.after_us);
         return;
     }

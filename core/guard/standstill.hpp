@@ -22,6 +22,7 @@ struct StandstillRules {
     std::uint64_t window_samples = kNeverStands;  // from the oldest sample to the newest
     std::uint64_t gap_samples_max = 0;            // between two samples that follow each other
     std::int64_t age_us_max = 0;                  // of the newest sample, when the guard asks
+    std::int64_t latched_age_us = 0;              // of positions at their latch, at most
     bool is_reported = false;                     // the frames say when axes move, not only where
     std::array<bool, kAxesMax> unlimited{};       // compared the short way round
     std::array<double, kAxesMax> width{};         // measured positions differ by at most this

@@ -72,6 +72,13 @@ inline constexpr PermitSamples kPermitSamplesUsual{3, 12};  // where the permit 
 // slows down where no longer permit is proven, and a look-ahead path says where the axes go.
 inline constexpr PermitSamples kPermitSamplesLonger{8, 12};
 
+/// How old the positions of a sample may be at its latch. Each of them has an age of its own.
+struct ValueAge {
+    std::uint32_t least_us = 0, most_us = 0;
+
+    friend bool operator==(const ValueAge&, const ValueAge&) = default;
+};
+
 /// Ids default to docs/reference/protocol.md: motion board = node 1, guard = node 2.
 struct CanLayout {
     CanFormat format = CanFormat::classical;
@@ -89,6 +96,7 @@ struct CanLayout {
     bool guard_sends_sync = false;        // cia402: the guard is the producer, every sample_us
     std::uint32_t sync_window_us = 0;  // cia402: process data later than this are not of this SYNC;
                                        // 0: sample_us
+    ValueAge latched_age;
     // signals: an arrival may be so much later than another one; 0: by sample_us
     std::uint32_t arrival_jitter_us = 0;
     std::uint32_t heartbeat_in_id = 0x701;

@@ -237,6 +237,12 @@ struct GuardRules {
     JogRules jog;
 };
 
+/// Promises that the machine file states, though each has a default. Axis has two more.
+struct StatedPromises {
+    bool sample_us = false, latched_age_us = false;
+    bool board_reaction_ms = false, latch_jitter_us = false, stop_reversal = false;
+};
+
 /// Output line of the guard's host for a monoflop, in addition to the bus.
 struct OutputLine {
     std::string chip;  // "gpiochip0"; empty: there is none
@@ -258,6 +264,7 @@ struct Machine {
     std::uint16_t first_tool = 0;  // in the spindle when nothing says otherwise; 0: none
     CanLayout can;
     GuardRules guard;
+    StatedPromises states;
     CycleRules cycle;
     std::optional<CyclePlan> plan;  // chosen at start, or recorded: in place of what `cycle` says
     OutputLine output_line;

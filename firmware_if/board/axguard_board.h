@@ -46,7 +46,7 @@ typedef enum axg_board_cap_kind {
 // The same numbers as in the machine file. Ids: docs/reference/board.md has the defaults.
 typedef struct axg_board_options {
     uint32_t period_us;          // T, can.sample_us
-    uint32_t jitter_us;          // of the latch, guard.latch_jitter_us
+    uint32_t jitter_us;          // guard.latch_jitter_us and the most of can.latched_age_us
     uint32_t reaction_us;        // t_board, guard.board_reaction_ms
     uint8_t permit_samples_max;  // largest n of a permit; 1 to 15
     uint8_t axis_count;          // 1 to AXG_BOARD_AXES_MAX

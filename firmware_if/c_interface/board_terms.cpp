@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/certificate/jog.hpp"
+#include "core/certificate/stop_limits.hpp"
 #include "firmware_if/c_interface/sample_frames.hpp"
 
 namespace axg {
@@ -12,9 +13,15 @@ namespace {
 
 constexpr double kDegPerRad = 0x1.ca5dc1a63c1f8p+5;
 constexpr double kUsPerS = 1e6;
+constexpr double kRoundingUs = 1e-3;  // more than those of seconds, and less than matters
 
 std::uint32_t microseconds(double seconds) noexcept {
     return static_cast<std::uint32_t>(std::lround(seconds * kUsPerS));
+}
+
+/// No less: an age of 1 % more is no whole number of microseconds.
+std::uint32_t microseconds_up(double seconds) noexcept {
+    return static_cast<std::uint32_t>(std::ceil(seconds * kUsPerS - kRoundingUs));
 }
 
 axg_axis axis_of(const Axis& axis, const JogRules& jogs) noexcept {
@@ -43,7 +50,9 @@ axg_terms board_terms(const Machine& machine, const ConfigurationHashes& hashes)
     const CanLayout& can = machine.can;
     axg_terms out{};
     out.period_us = can.sample_us;
-    out.jitter_us = microseconds(machine.guard.latch_jitter_s);
+    // A board needs the sum alone, for H(n).
+    out.jitter_us =
+        microseconds(machine.guard.latch_jitter_s) + microseconds_up(age_seconds(machine).most);
     out.reaction_us = microseconds(machine.guard.board_reaction_s);
     out.permit_id = can.permit_id;
     out.stop_id = can.stop_id;

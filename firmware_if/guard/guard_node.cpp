@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <atomic>
 
+#include "core/guard/cap_guard.hpp"
+
 namespace axg {
 namespace {
 
@@ -76,6 +78,7 @@ GuardNode::GuardNode(const Machine& machine, LiveOptions options, CanTransport& 
       outbox_(wire_, times_.echo_us),
       handshake_(machine.can, options.hashes),
       period_(times_.period_us, times_.deadline_us, now_us),
+      age_samples_(age_samples(machine)),
       sync_(options.supposes_sync ? SyncProducer{} : make_sync_producer(machine, now_us)),
       last_turn_us_(now_us),
       heartbeat_us_(now_us),
@@ -287,15 +290,15 @@ void GuardNode::check_standstill(std::int64_t now_us) noexcept {
 void GuardNode::submit(LiveQuery::Kind kind, const ReceiverEvent& event,
                        std::int64_t now_us) noexcept {
     const bool has_caps = keeps_cap() && kind == LiveQuery::Kind::snapshot;
-    const LiveQuery query{
-        .kind = kind,
-        .number = submitted_ + 1,
-        .epoch = epoch_,
-        .period = guard_.period,
-        .is_armed = guard_.phase == GuardPhase::armed,
-        .event = event,
-        .caps = has_caps ? ledger_.note_sample(acked_permit(event.snapshot), event.samples_lost)
-                         : CapFacts{}};
+    const LiveQuery query{.kind = kind,
+                          .number = submitted_ + 1,
+                          .epoch = epoch_,
+                          .period = guard_.period,
+                          .is_armed = guard_.phase == GuardPhase::armed,
+                          .event = event,
+                          .caps = has_caps ? ledger_.note_sample(acked_permit(event.snapshot),
+                                                                 event.samples_lost, age_samples_)
+                                           : CapFacts{}};
     if (!queues_.queries.push(query)) {
         return;  // the engine is so far behind that it is found silent
     }

@@ -207,6 +207,7 @@ class GuardNode {
     PeriodClock period_;
     bool has_snapshot_ = false;  // in this period
     AckLedger ledger_;           // of a board that keeps caps: what its samples name
+    std::uint32_t age_samples_;  // of their positions
     SyncProducer sync_;
     LiveCounters counters_;
 

@@ -245,6 +245,21 @@ TEST(CInterfaceSamples, TheTermsAreThoseOfTheMachineFile) {
                      machine.guard.jog.acceleration_rad_s2 * 180 / std::numbers::pi);
 }
 
+// A board's H has jitter and age as one sum.
+TEST(CInterfaceSamples, TheJitterOfTheTermsHoldsTheAgeOfPositions) {
+    const test::Workshop shop;
+    std::string text = test::content_of(test::kPaperMachine);
+    text.insert(text.find("\n  permit: 2") + 1, "  latched_age_us: [0, 1001]\n");
+    const std::string file = shop.write("aged.yaml", text);
+    axg_options options = test::c_options(AXG_MODE_CONTACT);
+    options.machine_file = file.c_str();
+    options.mesh_root = test::kPaperMeshes.c_str();
+    const test::CHost host(options);
+    axg_terms terms{};
+    ASSERT_EQ(axg_guard_terms(host.guard, &terms), AXG_STATUS_OK);
+    EXPECT_EQ(terms.jitter_us, 20U + 1012U) << "1 % more than 1001 us, and up";
+}
+
 // A program that was compiled with the version before: its axg_state ends where it did.
 TEST(CInterfaceSamples, AProgramOfVersion2GetsTheStateOfVersion2) {
     axg_options options = test::c_options(AXG_MODE_CONTACT);

@@ -45,6 +45,7 @@ constexpr const char* kDriveSection = R"(
 can:
   format: cia402
   sync_counter: 240
+  latched_age_us: 0
   drives:
     X: {pdos: [{cob_id: 0x183, map: [0x60410010, 0x60640020]}],
         counts: 1000, per_mm: 1, absolute: true}
@@ -142,6 +143,17 @@ TEST_P(ForeignFrames, EndWithTheVerdictOfOurOwn) {
             EXPECT_GE(stop["sample"].get<int>(), wanted["sample"].get<int>() - 20) << name;
         }
     }
+}
+
+// The default of drives, any of which may answer with the value of the SYNC before: their samples
+// say less of speed and acceleration, and what they certify begins a period earlier.
+TEST_F(ForeignFrames, DrivesThatMayAnswerLateAreStoppedEarlier) {
+    std::string late = kDriveSection;
+    late.erase(late.find("  latched_age_us: 0\n"), 20);
+    const Json stated = judged("drives", kDriveSection, "stoppable")["stops"][0];
+    const Json unstated = judged("late", late, "stoppable")["stops"][0];
+    EXPECT_EQ(unstated["reason"], stated["reason"]);
+    EXPECT_LT(unstated["sample"].get<int>(), stated["sample"].get<int>());
 }
 
 INSTANTIATE_TEST_SUITE_P(Modes, ForeignFrames, testing::Values("contact", "stoppable"),

@@ -54,6 +54,17 @@ TEST(MachineDrives, WithoutAWordSyncDoesNotCountAndTheWindowIsThePeriod) {
     EXPECT_EQ(machine.can.sync_window_us, 1000U);
 }
 
+TEST(MachineDrives, ADriveMayAnswerWithTheValueOfTheSyncBefore) {
+    Machine machine;
+    ASSERT_EQ(faults_with_file(drive_machine(), kDriveEds, machine), "");
+    EXPECT_EQ(machine.can.latched_age, (ValueAge{0, 1000}));
+    EXPECT_FALSE(machine.states.latched_age_us);
+    const std::string text = with(drive_machine(), "  sync_counter: 240\n",
+                                  "  sync_counter: 240\n  latched_age_us: 0\n");
+    ASSERT_EQ(faults_with_file(text, kDriveEds, machine), "");
+    EXPECT_EQ(machine.can.latched_age, (ValueAge{0, 0}));
+}
+
 // The guard counts to 240, and its SYNC is no more precise than a bus.
 TEST(MachineDrives, TheGuardMayBeTheProducerOfSync) {
     const std::string by_guard = with(drive_machine(), "sync_counter: 240", "sync: guard");

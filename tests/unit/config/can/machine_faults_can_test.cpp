@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "config/machine/effective_text.hpp"
+#include "config/mesh/load_meshes.hpp"
 #include "tests/support/machine_text.hpp"
 
 namespace axg::test {
@@ -241,6 +242,36 @@ TEST(MachineFaultsCan, ThePermitsSamplesAreOneNumberOrTwo) {
               "m:34: can.permit_samples: invalid value (found ");
     EXPECT_NE(effective_text(machine_of("permit_samples: [3, 11]\n")),
               effective_text(machine_of("permit_samples: [3, 10]\n")));
+}
+
+TEST(MachineFaultsCan, TheAgeOfPositionsIsOneNumberOrTwo) {
+    const auto stated = [](const std::string& key) {
+        return with(kSmallMachine, "  stale_after_us: 3000\n", key.empty() ? "" : "  " + key);
+    };
+    const auto machine_of = [&](const std::string& key) {
+        Machine machine;
+        EXPECT_TRUE(parse_machine(stated(key), "m", machine).empty()) << key;
+        return machine;
+    };
+    EXPECT_EQ(machine_of("").can.latched_age, (ValueAge{0, 0})) << "a board stamps at the latch";
+    EXPECT_FALSE(machine_of("").states.latched_age_us);
+    EXPECT_EQ(machine_of("latched_age_us: 800\n").can.latched_age, (ValueAge{800, 800}));
+    EXPECT_TRUE(machine_of("latched_age_us: 800\n").states.latched_age_us);
+    EXPECT_EQ(machine_of("latched_age_us: [0, 10000]\n").can.latched_age, (ValueAge{0, 10'000}));
+    const std::string one = "m:33: can.latched_age_us: invalid value (found ";
+    EXPECT_EQ(faults_of(stated("latched_age_us: 10001\n")),
+              one + "\"10001\", expected an integer from 0 to 10000).\n");
+    EXPECT_EQ(faults_of(stated("latched_age_us: [1, 0]\n")).substr(0, one.size()), one);
+    EXPECT_EQ(faults_of(stated("latched_age_us: [0]\n")),
+              one +
+                  "a list of 1, expected an integer from 0 to 10000, or two of them: [least, "
+                  "most]).\n");
+    EXPECT_EQ(effective_text(machine_of("")), effective_text(machine_of("latched_age_us: 0\n")));
+    const MachineMeshes none;
+    constexpr std::size_t kLimits = 3;
+    EXPECT_NE(configuration_hashes(machine_of(""), none).of[kLimits],
+              configuration_hashes(machine_of("latched_age_us: [0, 1]\n"), none).of[kLimits])
+        << "the board's H has it";
 }
 
 TEST(MachineFaultsCan, StaleBeforeTheNextSampleIsRefused) {

@@ -388,5 +388,28 @@ TEST_F(LookAheadPathTest, TheAxesKeepToThePathOrTheyDoNot) {
     EXPECT_TRUE(path->keeps_to(snapshot));
 }
 
+// Between the positions of one and two periods before, 0.15 mm each, and 1 % of two periods.
+TEST_F(LookAheadPathTest, PositionsOfBeforeKeepToWhereThePathWasThen) {
+    m.can.latched_age = {1000, 2000};
+    m.axes[kAxisZ].following_error = 0.02;
+    m.axes[kAxisZ].position_error = 0.001;
+    options.count[kAxisZ] = 0.0001;
+    make();
+    note_path(1, 300, 150);
+    AxisSnapshot snapshot;
+    snapshot.sample = 100;
+    const double allowed = 0.0211 + 0.003 + 0.003;
+    for (const double off : {-14.7 + allowed, -14.85 - allowed, -14.75}) {
+        snapshot.position[kAxisZ] = off;
+        EXPECT_TRUE(path->keeps_to(snapshot)) << off;
+    }
+    for (const double off : {-14.7 + allowed + 0.002, -14.85 - allowed - 0.002, -15.0}) {
+        snapshot.position[kAxisZ] = off;
+        EXPECT_FALSE(path->keeps_to(snapshot)) << off;
+    }
+    snapshot.sample = 1;  // of two periods before nothing was said
+    EXPECT_TRUE(path->keeps_to(snapshot));
+}
+
 }  // namespace
 }  // namespace axg::test

@@ -93,6 +93,17 @@ TEST_F(StopCertificateTest, TheHorizonIsTheSumOfItsParts) {
     EXPECT_NEAR(free_seconds(m, 4), 4 * 0.505e-3 + 1005e-6 + 1e-3, 1e-12);
 }
 
+// A value a period old is as old as the longest period; two values of any age in the range differ
+// by it once more, and the horizon has that no second time.
+TEST_F(StopCertificateTest, TheAgeOfAPositionIsInTheHorizonAndItsSpreadInTheJitter) {
+    m.can.latched_age = {400, 1000};
+    EXPECT_NEAR(free_seconds(m, 3), 3 * 1.01e-3 + 20e-6 + 2e-3 + 1.01e-3, 1e-12);
+    EXPECT_NEAR(sample_errors(m, 0, 0).latch_jitter_s, 20e-6 + 0.606e-3, 1e-12);
+    m.can.latched_age = {1000, 1000};  // always the value of the SYNC before
+    EXPECT_NEAR(free_seconds(m, 3), 3 * 1.01e-3 + 20e-6 + 2e-3 + 1.01e-3, 1e-12);
+    EXPECT_NEAR(sample_errors(m, 0, 0).latch_jitter_s, 20e-6, 1e-12);
+}
+
 TEST_F(StopCertificateTest, ErrorsOfAPositionAddUp) {
     m.axes[0].following_error = 0.03;
     const SampleErrors errors = sample_errors(m, 0, 0.0005);

@@ -68,6 +68,56 @@ TEST(AckLedger, APermitOfBeforeIsUnknown) {
     EXPECT_EQ(ledger.note_ack(3).status, AckStatus::unknown);
 }
 
+// A cap that was in force when old positions were true counts until no position is of that time.
+TEST(AckLedger, PositionsOfBeforeMayHaveBeenTakenUnderTheCapOfThen) {
+    for (const unsigned age : {0U, 1U, 3U}) {
+        AckLedger ledger;
+        send(ledger, 1, 1, 200);
+        for (unsigned i = 0; i < 8; ++i) {
+            (void)ledger.note_sample(1, 0, age);
+        }
+        send(ledger, 2, 2, 40);
+        for (unsigned i = 0; i < 8; ++i) {  // it has slowed down, and names the order
+            const CapFacts facts = ledger.note_sample(2, 0, age);
+            EXPECT_EQ(facts.acked[0], i < age ? 200 : 40) << age << ' ' << i;
+            EXPECT_EQ(facts.status, AckStatus::known);
+        }
+    }
+}
+
+// Between two samples it may have kept more than either of them names.
+TEST(AckLedger, WithAnAgeEveryPermitInBetweenCounts) {
+    AckLedger ledger;
+    send(ledger, 1, 1, 40);
+    for (unsigned i = 0; i < 20; ++i) {
+        (void)ledger.note_sample(1, 0, 1);
+    }
+    send(ledger, 2, 2, 120);
+    send(ledger, 3, 3, 40);
+    EXPECT_EQ(ledger.note_sample(3, 0, 1).acked[0], 120);
+    EXPECT_EQ(ledger.note_sample(3, 0, 1).acked[0], 40);
+    EXPECT_EQ(ledger.note_sample({}, 0, 1).acked, rapid_caps());
+    EXPECT_EQ(ledger.note_sample(3, 0, 1).acked, rapid_caps()) << "a sample named no permit";
+    EXPECT_EQ(ledger.note_sample(3, 0, 1).acked[0], 40);
+}
+
+// What is known of 16 samples before is about positions that were older still.
+TEST(AckLedger, TheWindowOfSpeedsIsLongerByTheAge) {
+    for (const unsigned age : {0U, 2U, kAgeSamplesMax, kAgeSamplesMax + 1}) {
+        AckLedger ledger;
+        send(ledger, 1, 1, 200);
+        for (unsigned i = 0; i < 60; ++i) {
+            (void)ledger.note_sample(1, 0, age);
+        }
+        send(ledger, 2, 2, 40);
+        for (unsigned i = 0; i < 60; ++i) {
+            const std::uint8_t since = ledger.note_sample(2, 0, age).since[0];
+            const std::uint8_t known = i < 16 + age ? 200 : 40;
+            EXPECT_EQ(since, age > kAgeSamplesMax ? kCapRapid : known) << age << ' ' << i;
+        }
+    }
+}
+
 // The board takes 95 periods to slow down, and names the last permit without the cap meanwhile.
 TEST(AckLedger, ABoardThatSlowsDownIsNotTakenForOneThatHas) {
     AckLedger ledger;

@@ -75,6 +75,30 @@ struct GuardBench {
     AxisSnapshot snapshot;
 };
 
+// A sample is old enough when it was latched no later than these positions, on the shortest period.
+TEST(CapGuard, TheAgeOfPositionsIsASampleOrMoreBefore) {
+    Machine machine = capped_machine();
+    EXPECT_EQ(age_samples(machine), 0U);
+    const double answer_s = cap_answer_seconds(machine);
+    machine.can.latched_age = {0, 1000};  // 1010 us and 20 of jitter are more than 990
+    EXPECT_EQ(age_samples(machine), 2U);
+    EXPECT_NEAR(cap_answer_seconds(machine), answer_s + 1.01e-3, 1e-12);
+    machine.can.latched_age = {900, 900};
+    EXPECT_EQ(age_samples(machine), 1U);
+    machine.can.latched_age = {1000, 2000};
+    EXPECT_EQ(age_samples(machine), 3U);
+}
+
+// 250 mm/s for 1.01 ms, and the 1.01 ms by which one position may be older than the other.
+TEST(CapGuard, PositionsOfDifferentAgesAreNotTooFast) {
+    for (const bool is_stated : {true, false}) {
+        GuardBench bench;
+        bench.machine.can.latched_age = {0, is_stated ? 1000U : 0U};
+        (void)bench.step(facts_at(125), 0);
+        EXPECT_EQ(bench.step(facts_at(125), 0.5).is_stop, !is_stated);
+    }
+}
+
 TEST(CapGuard, OrdersLessWhereThatIsWishedFor) {
     GuardBench bench;
     CycleResult result = bench.step(facts_at(kCapRapid), 0);

@@ -66,6 +66,16 @@ TEST(Standstill, AnAxisAtRestStandsAfterTheWindowAndNotBefore) {
     EXPECT_EQ(board.first_stand(1000, 2000), 1102U);
 }
 
+// What was latched up to the age after a stop may be of before it.
+TEST(Standstill, PositionsOfBeforeTheStopDoNotCount) {
+    Board board;
+    board.machine.can.latched_age = {0, 5000};  // in the longest periods, 5050 us
+    board.rules = rules_of(board.machine);
+    const std::uint64_t window = board.rules.window_samples;
+    begin_standstill(board.state, 1000 * 1000);
+    EXPECT_EQ(board.first_stand(1000, 2000), 1006 + window);
+}
+
 TEST(Standstill, AMachineThatComesToRestStandsWithin150Ms) {
     Board board;
     for (std::uint64_t k = 0; k < 500; ++k) {

@@ -77,6 +77,28 @@ TEST(SnapshotCheck, A03_AJumpBeyondTheAxisSpeedStopsOnBothSidesOfTheBound) {
     }
 }
 
+// A value of this SYNC behind one of the SYNC before: two periods of motion, and 1 % of one.
+TEST(SnapshotCheck, A03_PositionsOfDifferentAgesAreNoJump) {
+    for (const double step_mm : {1.020, 1.023}) {
+        Fixture fixture(CanFormat::classical, 22);
+        fixture.machine.can.latched_age = {0, 1000};
+        fixture.receiver = AxisReceiver(fixture.machine);
+        AxisEncoder encoder(fixture.machine);
+        for (std::size_t k = 0; k < 22; ++k) {
+            AxisSnapshot snapshot = snapshot_at(fixture.machine, k);
+            snapshot.mode = kModeStandstill;
+            snapshot.position = {k < 20 ? 0.0 : step_mm, 0, 0, 0, 0};
+            fixture.samples[k] = frames_of(encoder, snapshot);
+        }
+        fixture.hear();
+        if (step_mm < 1.021) {
+            fixture.expect_running_without(0);
+        } else {
+            fixture.expect_stop(ReceiverFault::jump);
+        }
+    }
+}
+
 // An encoder may be off by as much as the machine file says: that is no jump, and not beyond the
 // travel. What is farther is.
 TEST(SnapshotCheck, TheErrorOfAnEncoderIsNoJumpAndNotBeyondTheTravel) {
