@@ -70,6 +70,10 @@ MotionBoard::MotionBoard(const Machine& machine, std::span<const double> start,
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
         axes_[i].position = sent_[i] = start[i];
     }
+    if (options_.latched_age.most_us != 0) {
+        past_.emplace(options_.latched_age.most_us);
+        past_->note(now_us_, axes_);
+    }
     const double period_s = machine.can.sample_us * kSecondsPerUs;
     // What is told now acts on commands that the axes follow later.
     options_.cap_smooth_s += machine.can.look_ahead_samples * period_s;
@@ -320,17 +324,39 @@ void MotionBoard::advance_part(std::int64_t until_us) {
     now_us_ = until_us;
 }
 
-void MotionBoard::advance(std::int64_t until_us) {
-    while (observe_ && !is_at_rest() && state_ != BoardState::waiting && now_us_ < until_us) {
-        advance_part(std::min(until_us, now_us_ + observe_every_us_));
-        observe_(now_us_, axes());
+/// In parts so short that positions between them are known, where those are sent.
+void MotionBoard::advance_noted(std::int64_t until_us) {
+    while (past_ && now_us_ < until_us) {
+        advance_part(std::min(until_us, now_us_ + kPastPartUs));
+        past_->note(now_us_, axes_);
     }
     if (now_us_ < until_us) {
         advance_part(until_us);
     }
+}
+
+void MotionBoard::advance(std::int64_t until_us) {
+    while (observe_ && !is_at_rest() && state_ != BoardState::waiting && now_us_ < until_us) {
+        const std::int64_t to_us = std::min(until_us, now_us_ + observe_every_us_);
+        advance_noted(to_us);
+        observe_(now_us_, axes());
+    }
+    advance_noted(until_us);
     if (is_at_rest()) {
         watch_.rest(now_us_);
     }
+}
+
+/// As old as it may be, as young, or anything between.
+double MotionBoard::latched_position(std::uint32_t axis) {
+    if (!past_) {
+        return axes_[axis].position;
+    }
+    const ValueAge age = options_.latched_age;
+    const double drawn = between(-1, 2);
+    const auto age_us = static_cast<std::int64_t>(age.least_us + std::clamp(drawn, 0.0, 1.0) *
+                                                                     (age.most_us - age.least_us));
+    return past_->position(now_us_ - age_us, axis);
 }
 
 AxisSnapshot MotionBoard::snapshot_now(std::int64_t nominal_us, std::int64_t latched_us) {
@@ -343,7 +369,7 @@ AxisSnapshot MotionBoard::snapshot_now(std::int64_t nominal_us, std::int64_t lat
     snapshot.flags = options_.is_homed ? 0 : kFlagNotHomed;
     snapshot.mode = kModeStandstill;
     for (std::uint32_t i = 0; i < snapshot.axis_count; ++i) {
-        snapshot.position[i] = axes_[i].position;
+        snapshot.position[i] = latched_position(i);
         const double step = std::abs(axes_[i].position - sent_[i]);
         sent_[i] = axes_[i].position;
         if (step >= kStandstillCounts * encoder_.frame_set().axes[i].unit) {

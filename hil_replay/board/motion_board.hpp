@@ -20,6 +20,7 @@
 #include "hil_replay/board/axis_motion.hpp"
 #include "hil_replay/board/axis_shares.hpp"
 #include "hil_replay/board/commanded_path.hpp"
+#include "hil_replay/board/past_motion.hpp"
 #include "hil_replay/board/permit_watch.hpp"
 
 namespace axg {
@@ -31,9 +32,10 @@ struct BoardOptions {
     std::int64_t tick_us = 1000;           // of the commanded motion; divides the sample period
     std::int64_t reaction_us_max = 1000;   // t_board: drawn up to this for each stop
     std::int64_t latch_jitter_us_max = 0;  // of a sample's instant, either way
-    double deceleration_factor_max = 2;    // drawn from 1 to this times the guaranteed one
-    double jerk_factor_max = 4;            // the same of the jerk
-    std::int64_t permit_us = 0;            // of a permit on the board's timer; 0: n T
+    ValueAge latched_age{};  // of each position at its latch: the ends, or drawn between them
+    double deceleration_factor_max = 2;  // drawn from 1 to this times the guaranteed one
+    double jerk_factor_max = 4;          // the same of the jerk
+    std::int64_t permit_us = 0;          // of a permit on the board's timer; 0: n T
     bool is_homed = true;
     std::uint16_t tool = 0;  // in the spindle at the start; 0: Machine::first_tool
     JogMove jog{};  // it is in jog: one axis, one way, with the permit for that; none: it is not
@@ -141,6 +143,7 @@ class MotionBoard {
     void set_next_latch();
     void advance(std::int64_t until_us);
     void advance_part(std::int64_t until_us);
+    void advance_noted(std::int64_t until_us);
     [[nodiscard]] std::int64_t first_stop_us() const noexcept;
     void note_stop();
     void begin_braking();
@@ -151,6 +154,7 @@ class MotionBoard {
     void set_from_path(double commanded_us, std::int64_t now_us);
     [[nodiscard]] double off_path(std::size_t axis, std::int64_t now_us) const noexcept;
     void settle(std::int64_t now_us);
+    [[nodiscard]] double latched_position(std::uint32_t axis);
     [[nodiscard]] AxisSnapshot snapshot_now(std::int64_t nominal_us, std::int64_t latched_us);
     [[nodiscard]] double between(double low, double high);
 
@@ -165,7 +169,8 @@ class MotionBoard {
 
     BoardState state_ = BoardState::waiting;
     BoardStopRecord stop_;
-    AxisMotions axes_{};  // at now_us_
+    AxisMotions axes_{};              // at now_us_
+    std::optional<PastMotion> past_;  // where positions have an age
     std::array<Brake, kAxesMax> brakes_{};
     // Where there is a look-ahead path: axes_ is what the path commands and what they are off it.
     std::optional<CommandedPath> path_;

@@ -21,6 +21,7 @@ BoardOptions promised_board(const Machine& machine, std::uint64_t seed) {
     // The time between two samples is off by twice the jitter of one.
     board.latch_jitter_us_max =
         static_cast<std::int64_t>(std::floor(machine.guard.latch_jitter_s * 0.5e6));
+    board.latched_age = machine.can.latched_age;
     board.cap = machine.guard.cap;
     return board;
 }

@@ -41,6 +41,8 @@ enum class Wrong : std::uint8_t {
     reacts,          // caps of single axes are kept by a feed that reacts
     frozen,          // the count of one axis freezes in motion
     frozen_trusted,  // and the guard takes it for true
+    aged,            // positions are up to two periods old, and the machine file does not say so
+    aged_and_said,   // nothing: it does
 };
 
 struct ApproachScene {
@@ -257,6 +259,9 @@ class ApproachRun {
           rules_(wrong, machine_.can.sample_us) {
         of_board_.can.permit_samples.most = static_cast<std::uint8_t>(
             std::min(15, machine_.can.permit_samples.most + (wrong == Wrong::one_more ? 1 : 0)));
+        if (wrong == Wrong::aged || wrong == Wrong::aged_and_said) {
+            draw_age();
+        }
         drawn_.story.reacts_ticks = wrong == Wrong::reacts ? drawn_.reacts_ticks : 0;
         tool_ = {.number = drawn_.story.tool, .next = drawn_.story.next_tool};
         if (wrong == Wrong::frozen || wrong == Wrong::frozen_trusted) {
@@ -307,8 +312,20 @@ class ApproachRun {
   private:
     static constexpr std::int64_t kLongestUs = 300'000, kWaitUs = 60'000, kWatchUs = 200;
 
+    /// A register one SYNC behind, always or now and then; or always two that follow each other.
+    void draw_age() {
+        const std::uint32_t period_us = machine_.can.sample_us;
+        const double kind = dice_.in(0, 1);
+        age_ = kind < 0.4   ? ValueAge{period_us, period_us}
+               : kind < 0.7 ? ValueAge{0, period_us}
+                            : ValueAge{2 * period_us, 2 * period_us};
+        if (wrong_ == Wrong::aged_and_said) {
+            machine_.can.latched_age = age_;
+        }
+    }
     BoardOptions board_options(LazyMotion& motion) const {
         BoardOptions options = promised_board(machine_, drawn_.seed);
+        options.latched_age = age_;
         options.tool = drawn_.story.tool;
         options.cap_fault = cap_fault_of(wrong_);
         options.cap_smooth_s = static_cast<double>(drawn_.story.lazy_ticks) * kTickS;
@@ -409,6 +426,7 @@ class ApproachRun {
     Dice dice_;
     Machine& machine_;
     WildApproach drawn_;
+    ValueAge age_;
     Machine of_board_;
     WithoutRules rules_;
     SpindleTool tool_;
