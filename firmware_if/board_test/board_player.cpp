@@ -41,7 +41,7 @@ BoardPlayer::BoardPlayer(const Machine& machine, const BoardTestOptions& options
 void BoardPlayer::choose_cases() {
     const double period_s = machine_.can.sample_us * 1e-6;
     const double samples = machine_.can.permit_samples.most;
-    const double wanted = 4 + std::ceil(machine_.guard.board_reaction_s / period_s);
+    const double wanted = 4 + std::ceil(seen_reaction_s(machine_) / period_s);
     for (const BoardCase& one : board_cases()) {
         BoardFinding finding{one.name, one.rule, one.demands, Outcome::not_tested, "", 0, one.mend};
         const bool is_first = findings_.size() < kFirstCases;
@@ -98,7 +98,7 @@ double BoardPlayer::stop_seconds_max() const noexcept {
         const double ramp_s = has_jerk_limit(axis) ? axis.stopping_min / axis.jerk_max : 0;
         longest = std::max(longest, axis.speed_max / axis.stopping_min + ramp_s);
     }
-    return 2 * (longest + machine_.guard.board_reaction_s) + kWindowUs * 1e-6;
+    return 2 * (longest + seen_reaction_s(machine_)) + kWindowUs * 1e-6;
 }
 
 void BoardPlayer::enter(Stage stage) {
@@ -114,8 +114,7 @@ void BoardPlayer::enter(Stage stage) {
     if ((stage == Stage::settle || stage == Stage::arm || has_ended) && !has_resumed_ &&
         !rest_.is_on()) {
         rest_.begin(entered_sample_, 0,
-                    kLapseSamples * machine_.can.sample_us * 1e-6 + machine_.guard.board_reaction_s,
-                    {});
+                    kLapseSamples * machine_.can.sample_us * 1e-6 + seen_reaction_s(machine_), {});
     }
 }
 

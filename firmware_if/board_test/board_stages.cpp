@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/certificate/stop_limits.hpp"
 #include "firmware_if/board_test/board_player.hpp"
 
 namespace axg {
@@ -86,9 +87,9 @@ std::int64_t BoardPlayer::quiet_us() const noexcept {
 
 /// From the due instant of this case on.
 void BoardPlayer::begin_rest() {
-    const double board_s = std::max(machine_.guard.board_reaction_s, lapse_s_.value_or(0));
-    rest_.begin(due_.sample, due_.later_s, board_s + due_.stamp_s + machine_.guard.latch_jitter_s,
-                steady_);
+    const double board_s = std::max(seen_reaction_s(machine_), lapse_s_.value_or(0));
+    const double jitter_s = sample_errors(machine_, 0, 0).latch_jitter_s;
+    rest_.begin(due_.sample, due_.later_s, board_s + due_.stamp_s + jitter_s, steady_);
 }
 
 void BoardPlayer::watch_rest() {
@@ -218,7 +219,7 @@ void BoardPlayer::judge_stop(bool is_over_due) {
     }
     const double reaction_s = longest_reaction_s(machine_, stops);
     const bool is_lapse = case_ < kFirstCases;
-    const double board_s = machine_.guard.board_reaction_s;
+    const double board_s = seen_reaction_s(machine_);
     // A board that is too slow in the lapse is so everywhere: other rules are judged by that.
     const bool is_slow = lapse_s_.value_or(0) > board_s;
     const double allowed_s =
@@ -251,9 +252,12 @@ void BoardPlayer::judge_stop(bool is_over_due) {
         watch_.fail(Watched::braking, now_us_, turned);
     }
     if (is_in_time) {
-        end_case(Outcome::passed,
-                 fmt::format("braked with a reaction time of {:.2f} ms after {}, allowed {:.2f} ms",
-                             reaction_s * 1e3, what, board_s * 1e3));
+        end_case(
+            Outcome::passed,
+            fmt::format(
+                "braked with a reaction time of {:.2f} ms after {}, allowed {:.2f} ms{}",
+                reaction_s * 1e3, what, board_s * 1e3,
+                machine_.can.latched_age.most_us == 0 ? "" : ", with the age of the positions"));
         return;
     }
     const auto over = overshoot_of(machine_, stops, allowed_s);

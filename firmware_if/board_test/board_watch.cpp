@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/certificate/motion_history.hpp"
+#include "core/certificate/stop_limits.hpp"
 
 namespace axg {
 
@@ -106,11 +106,7 @@ void BoardWatch::judge_tool(const AxisSnapshot& snapshot, bool is_braking) {
         announced_us_ = snapshot.latched_us;
     }
     if (has_tool_ && snapshot.tool != tool_) {
-        const std::int64_t period_us = machine_.can.sample_us;
-        const double horizon_us =
-            1.01 * static_cast<double>(machine_.can.permit_samples.most) *
-                static_cast<double>(period_us) +
-            1e6 * (machine_.guard.latch_jitter_s + machine_.guard.board_reaction_s);
+        const double horizon_us = 1e6 * free_seconds(machine_, machine_.can.permit_samples.most);
         note(Watched::tool_change);
         const double ahead_us =
             announced_us_ ? static_cast<double>(snapshot.latched_us - *announced_us_) : 0;

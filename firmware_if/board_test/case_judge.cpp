@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/certificate/stop_limits.hpp"
 #include "firmware_if/cli/limit_text.hpp"
 
 namespace axg {
@@ -42,8 +43,12 @@ void end_at_rest(AxisStop& stop, double resolution, double period) {
 
 }  // namespace
 
+double seen_reaction_s(const Machine& machine) noexcept {
+    return machine.guard.board_reaction_s + age_seconds(machine).most;
+}
+
 double least_speed(const Machine& machine, const MotionRecord& record, std::size_t axis) noexcept {
-    const double seconds = std::max(machine.guard.board_reaction_s, period_s(machine));
+    const double seconds = std::max(seen_reaction_s(machine), period_s(machine));
     return 10 * record.resolution(axis) / seconds;
 }
 
@@ -72,12 +77,13 @@ std::vector<AxisStop> stops_of(const Machine& machine, const MotionRecord& recor
     std::vector<AxisStop> out;
     const RecordedSample& known = record.at(instant.sample);
     const double window_s = static_cast<double>(window_samples(machine)) * period_s(machine);
+    const double jitter_s = sample_errors(machine, 0, 0).latch_jitter_s;
     for (const SteadyAxis& steady : before) {
         const double way = steady.speed < 0 ? -1 : 1;
         const double speed = std::abs(steady.speed);
         const double resolution = record.resolution(steady.axis);
         AxisStop stop{.axis = steady.axis, .speed = speed + resolution / window_s, .points = {}};
-        stop.tolerance = 2 * resolution + speed * (instant.stamp_s + machine.guard.latch_jitter_s);
+        stop.tolerance = 2 * resolution + speed * (instant.stamp_s + jitter_s);
         for (const RecordedSample& sample : record.samples()) {
             const double seconds =
                 sample.number <= known.number

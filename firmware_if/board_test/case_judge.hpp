@@ -19,6 +19,9 @@ struct SteadyAxis {
     double speed = 0;  // signed, mm/s or rad/s
 };
 
+/// So long after its end a permit's stop may show in the positions: they have an age, too.
+[[nodiscard]] double seen_reaction_s(const Machine& machine) noexcept;
+
 /// The slowest speed from which a stop shows a reaction: ten times the resolution in t_board.
 [[nodiscard]] double least_speed(const Machine& machine, const MotionRecord& record,
                                  std::size_t axis) noexcept;

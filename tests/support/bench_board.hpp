@@ -29,7 +29,8 @@ struct BenchOptions {
     bool has_cap = false;
     double feed_mm_s = 100, half_way_mm = 100;  // of the program, on axis 0
     std::int64_t reaction_us = 1300;
-    bool has_tool_change = true;  // once, at rest, before the third arming
+    bool has_tool_change = true;    // once, at rest, before the third arming
+    bool sends_old_values = false;  // positions of the SYNC before
 };
 
 class BenchBoard {
@@ -508,6 +509,12 @@ class BenchBoard {
         std::vector<std::int32_t> counts(machine_.axes.size(), 0);
         counts[0] = static_cast<std::int32_t>(std::lround(axis_.position / set_.axes[0].unit));
         counts[1] = static_cast<std::int32_t>(std::lround(other_mm_ / set_.axes[1].unit));
+        if (options_.sends_old_values) {
+            const std::array<std::int32_t, 2> now{counts[0], counts[1]};
+            counts[0] = old_counts_[0];
+            counts[1] = old_counts_[1];
+            old_counts_ = now;
+        }
         std::array<axg_board_axis_ids, AXG_BOARD_CLASSICAL_FRAMES_MAX> ids{};
         for (std::uint32_t i = 0; i < set_.frame_count; ++i) {
             ids[i] = {set_.ids[i], set_.data_ids[i]};
@@ -572,6 +579,7 @@ class BenchBoard {
     std::int64_t now_us_ = 0, next_us_ = 1000, heartbeat_us_ = 0, session_us_ = 0;
     std::int64_t brake_us_ = 0, rests_since_us_ = -kRestUs;
     std::uint64_t sample_ = 0;
+    std::array<std::int32_t, 2> old_counts_{};  // of the sample before
     std::uint8_t sync_ = 1, session_counter_ = 0;
     std::uint16_t lap_ = 0, tool_ = 1;
     State state_ = State::resting;

@@ -179,6 +179,24 @@ TEST(BoardTest, TheMeasuredKeysAreThoseOfTheBoard) {
     EXPECT_NE(json.find("\"name\": \"lapse\""), std::string::npos);
 }
 
+// Positions show a stop as late as they are old: one figure, less what the machine file states.
+TEST(BoardTest, TheAgeOfPositionsIsInTheReaction) {
+    Bench bench = bench_of(Broken::nothing, false);
+    bench.board.sends_old_values = true;
+    EXPECT_EQ(failed_rules(play(bench)).count("lapse"), 1U) << "2.3 ms, and 2 ms are allowed";
+    bench.machine.can.latched_age = {1000, 1000};
+    const BoardTestResult result = play(bench);
+    EXPECT_EQ(failed_rules(result), std::set<std::string>{}) << report_text(result);
+    EXPECT_GT(result.reaction_s, 1.8e-3);
+    EXPECT_LE(result.reaction_s, 2.3e-3 + 50e-6);
+    const std::string keys = machine_keys(bench.machine, result);
+    EXPECT_NE(keys.find("the age of the positions, less 1000 us of can.latched_age_us.\n"),
+              std::string::npos)
+        << keys;
+    EXPECT_NE(keys.find("board_reaction_ms: 1."), std::string::npos) << keys;
+    EXPECT_NE(report_text(result).find(", with the age of the positions"), std::string::npos);
+}
+
 TEST(BoardTest, AComputerThatSendsLateIsNoFaultOfTheBoard) {
     Bench bench = bench_of(Broken::nothing, false);
     bench.late_us = 9000;
