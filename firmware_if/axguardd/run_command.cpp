@@ -35,6 +35,7 @@
 #include "firmware_if/setup/cycle_parts.hpp"
 #include "firmware_if/setup/format_plan.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
+#include "firmware_if/setup/unstated_promises.hpp"
 #include "firmware_if/system/latch_file.hpp"
 #include "firmware_if/system/one_guard.hpp"
 
@@ -159,6 +160,12 @@ void log_start(const RunArguments& arguments, const Machine& machine) {
                    : "");
 }
 
+void log_unstated(const Machine& machine) {
+    for (const UnstatedPromise& promise : unstated_promises(machine)) {
+        fmt::print(stderr, "axguardd: not stated: {}\n", format_promise(machine, promise));
+    }
+}
+
 /// Whether a board was tested for this configuration; it decides nothing. Boards without permits
 /// of version 2 cannot be tested.
 FoundRecord log_board_test(const RunArguments& arguments, const LoadedMachine& loaded) {
@@ -232,6 +239,7 @@ int guard_bus(const RunArguments& arguments, LoadedMachine& loaded) {
     GuardChain chain(machine, engine, *engines.containment_test, parts.stop_certificate(),
                      parts.speed_advisory(), parts.margin_advisory());
     log_start(arguments, machine);
+    log_unstated(machine);
     if (is_stoppable) {
         fmt::print(stderr, "axguardd: plan: {}\n", format_plan(parts.stop_certificate()->plan()));
     }

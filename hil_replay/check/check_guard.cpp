@@ -54,6 +54,15 @@ std::string format_samples(PermitSamples samples) {
                                          : fmt::format("{} to {}", samples.least, samples.most);
 }
 
+/// "3 to 12 samples of permit, 2 ms board reaction", and the age of a position where it has one.
+std::string horizon_parts(const Machine& machine) {
+    const std::uint32_t age_us = machine.can.latched_age.most_us;
+    return fmt::format("{} samples of permit, {:.4g} ms board reaction{}",
+                       format_samples(machine.can.permit_samples),
+                       machine.guard.board_reaction_s * 1e3,
+                       age_us == 0 ? "" : fmt::format(", {:.4g} ms age", age_us * 1e-3));
+}
+
 /// With the shortest permit, and the longest where that is another.
 std::string horizons(const Machine& machine) {
     const PermitSamples samples = machine.can.permit_samples;
@@ -74,11 +83,10 @@ void report_path(CheckReport& report) {
     report.facts.look_ahead_longest_s = longest_s;
     fmt::print(
         report.words,
-        "\nstoppable mode: a stop begins at most {} after a sample ({} samples of permit, "
-        "{:.4g} ms board reaction) and keeps to the path; look-ahead {:.4g} ms, needed for a stop "
+        "\nstoppable mode: a stop begins at most {} after a sample ({}) and keeps to the path; "
+        "look-ahead {:.4g} ms, needed for a stop "
         "from full speed {:.4g} ms{}\n",
-        horizons(machine), format_samples(samples), machine.guard.board_reaction_s * 1e3,
-        look_ahead_s * 1e3, needed_s * 1e3,
+        horizons(machine), horizon_parts(machine), look_ahead_s * 1e3, needed_s * 1e3,
         look_ahead_s < needed_s ? ". Such a stop is not proven: increase can.ahead.samples"
         : look_ahead_s < longest_s
             ? fmt::format(", with permits of {} samples {:.4g} ms. These are not proven at full "
@@ -114,12 +122,27 @@ void report_obeyed_by(CheckReport& report) {
     }
 }
 
+/// What the machine file leaves out, and the price if its default is not true.
+void report_promises(CheckReport& report) {
+    const Machine& machine = report.loaded.machine;
+    report.facts.unstated = unstated_promises(machine);
+    fmt::print(report.words, "\npromises not stated: {}{}\n", report.facts.unstated.size(),
+               report.facts.unstated.empty()
+                   ? ""
+                   : fmt::format(" (a stop from rapid, with {} samples of permit)",
+                                 machine.can.permit_samples.least));
+    for (const UnstatedPromise& promise : report.facts.unstated) {
+        fmt::print(report.words, "  {}\n", format_promise(machine, promise));
+    }
+}
+
 }  // namespace
 
 void report_guard(CheckReport& report) {
     const Machine& machine = report.loaded.machine;
     const AxisFrameSet set = make_frame_set(machine);
     report_obeyed_by(report);
+    report_promises(report);
     if (machine.guard.promise == StopPromise::path_keeping) {
         report_path(report);
         if (machine.guard.jog.is_promised) {
@@ -128,10 +151,9 @@ void report_guard(CheckReport& report) {
         return;
     }
     fmt::print(report.words,
-               "\nstoppable mode: free motion for {} after a sample ({} samples of permit, "
-               "{:.4g} ms board reaction), then each axis brakes independently\n",
-               horizons(machine), format_samples(machine.can.permit_samples),
-               machine.guard.board_reaction_s * 1e3);
+               "\nstoppable mode: free motion for {} after a sample ({}), then each axis brakes "
+               "independently\n",
+               horizons(machine), horizon_parts(machine));
     for (std::uint32_t i = 0; i < machine.axes.size(); ++i) {
         const Axis& axis = machine.axes[i];
         const bool rotary = axis.kind == AxisKind::rotary;

@@ -152,13 +152,15 @@ Json describe_exclusions(const Machine& machine) {
 
 Json describe_guard(const Machine& machine, const CheckFacts& facts) {
     const PermitSamples samples = machine.can.permit_samples;
-    Json out{{"horizon_ms", free_seconds(machine, samples.least) * 1e3},
-             {"horizon_longest_ms", free_seconds(machine, samples.most) * 1e3},
-             {"permit_samples", {samples.least, samples.most}},
-             {"promise", to_text(machine.guard.promise)},
-             {"obeyed_by", to_text(machine.guard.obeyed_by)},
-             {"free_jerk", machine.guard.free_jerk_limited ? "limited" : "any"},
-             {"axes", Json::array()}};
+    Json out{
+        {"horizon_ms", free_seconds(machine, samples.least) * 1e3},
+        {"horizon_longest_ms", free_seconds(machine, samples.most) * 1e3},
+        {"permit_samples", {samples.least, samples.most}},
+        {"latched_age_us", {machine.can.latched_age.least_us, machine.can.latched_age.most_us}},
+        {"promise", to_text(machine.guard.promise)},
+        {"obeyed_by", to_text(machine.guard.obeyed_by)},
+        {"free_jerk", machine.guard.free_jerk_limited ? "limited" : "any"},
+        {"axes", Json::array()}};
     if (const std::string refusal = obeyed_by_refusal(machine); !refusal.empty()) {
         out["not_obeyed"] = refusal;
     }
@@ -169,6 +171,16 @@ Json describe_guard(const Machine& machine, const CheckFacts& facts) {
         out["ahead_ms"] = facts.look_ahead_s * 1e3;
         out["ahead_needed_ms"] = facts.look_ahead_needed_s * 1e3;
         out["ahead_longest_ms"] = facts.look_ahead_longest_s * 1e3;
+    }
+    out["not_stated"] = Json::array();
+    for (const UnstatedPromise& promise : facts.unstated) {
+        const Axis& axis = machine.axes[promise.axis];
+        out["not_stated"].push_back({{"key", promise.key},
+                                     {"assumed", promise.assumed},
+                                     {"cautious", promise.cautious},
+                                     {"axis", axis.name},
+                                     {"unit", unit_of(axis)},
+                                     {"cost", promise.cost}});
     }
     for (std::size_t i = 0; i < facts.reaches.size(); ++i) {
         out["axes"].push_back({{"name", machine.axes[i].name},

@@ -12,6 +12,7 @@
 #include "core/machine/machine.hpp"
 #include "core/mesh/mesh_check.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
+#include "firmware_if/setup/unstated_promises.hpp"
 
 namespace axg {
 
@@ -45,6 +46,7 @@ struct CheckFacts {
     double look_ahead_s = 0, look_ahead_needed_s = 0, look_ahead_longest_s = 0;
     std::vector<AxisReach> reaches;   // where they do not
     std::vector<double> jog_reaches;  // where a jog is promised; mm or degrees
+    std::vector<UnstatedPromise> unstated;
     std::optional<EngineFacts> engine;
     std::vector<PairContacts> contacts;
     std::string plan;  // as JSON; empty: none was wanted

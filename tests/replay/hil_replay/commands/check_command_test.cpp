@@ -57,6 +57,25 @@ TEST_F(CheckCommand, NamesTheWayOfEachAxis) {
         << shop_.out;
 }
 
+// What the file leaves out costs a stop something where its default is not true.
+TEST_F(CheckCommand, ListsPromisesWithoutAStatedValue) {
+    ASSERT_EQ(run("check", paper_, "--json '" + shop_.file("m.json") + "'"), 0) << shop_.err;
+    EXPECT_TRUE(says("\npromises not stated: 6 (a stop from rapid, with 3 samples of permit)\n"))
+        << shop_.out;
+    EXPECT_TRUE(
+        says("  guard.stop_reversal: none assumed; with jerk_limited X stops 17.1 mm "
+             "later\n"));
+    EXPECT_TRUE(says("  guard.board_reaction_ms: 2 assumed; with 4 X stops 3.58 mm later\n"));
+    EXPECT_TRUE(says("  can.latched_age_us: 0 assumed; with [0, 1000] X stops 1.86 mm later\n"));
+    const std::string json = content_of(shop_.file("m.json"));
+    EXPECT_NE(json.find("\"key\": \"guard.stop_reversal\""), std::string::npos) << json;
+    const std::string stated = with_can(
+        with(paper_, "guard:\n", "guard:\n  stop_reversal: none\n  board_reaction_ms: 2\n"),
+        "  latched_age_us: 0\n");
+    ASSERT_EQ(run("check", stated), 0) << shop_.err;
+    EXPECT_TRUE(says("\npromises not stated: 3 (")) << shop_.out;
+}
+
 TEST_F(CheckCommand, NamesTheBytesOfEachAxis) {
     ASSERT_EQ(run("check", paper_), 0);
     EXPECT_TRUE(says("  0x281, data id 0x0281  Z in bytes 2 to 4  A in bytes 5 to 7\n"));
