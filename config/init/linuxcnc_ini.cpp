@@ -21,6 +21,7 @@ constexpr double kNoLimit = 1e9;        // LinuxCNC's default limits are +-1e99
 constexpr double kLinearMm = 8388.607;  // what a frame can hold; farther limits are no machine's
 constexpr double kTurnsDeg = 10 * 360;  // a rotary axis that may go farther does not end
 constexpr std::string_view kAxisLetters = "XYZABCUVW";
+constexpr double kPeriodNsMin = 50e3, kPeriodNsMax = 100e6;  // what can.sample_us can be
 constexpr std::uint32_t kIncludesMax = 64;  // an include that includes itself ends here
 constexpr std::size_t kIncludeBytesMax = 1U << 20U;
 
@@ -147,6 +148,7 @@ class Reader {
         const std::string letters =
             coordinates == nullptr ? "" : letters_in(without_comment(coordinates->text));
         read_kinematics(letters);
+        read_period();
         if (!out_.faults.empty()) {
             return std::move(out_);
         }
@@ -234,6 +236,21 @@ class Reader {
         if (at != std::string::npos) {
             const std::string_view rest = std::string_view(upper_words).substr(at + kKey.size());
             joints_ = letters_in(rest.substr(0, rest.find_first_of(" \t")));
+        }
+    }
+
+    /// Of the thread in which motion and samples run.
+    void read_period() {
+        const Value* value = find("EMCMOT", "SERVO_PERIOD");
+        if (value == nullptr) {
+            return;
+        }
+        const double period_ns = number_of(without_comment(value->text)).value_or(0);
+        if (period_ns >= kPeriodNsMin && period_ns <= kPeriodNsMax &&
+            period_ns == std::floor(period_ns)) {
+            out_.servo_period_ns = static_cast<std::int64_t>(period_ns);
+        } else {
+            fault("EMCMOT", "SERVO_PERIOD", value, "50000 to 100000000, whole nanoseconds");
         }
     }
 

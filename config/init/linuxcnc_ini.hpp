@@ -3,6 +3,7 @@
 // Source: LinuxCNC "INI Configuration", sections KINS, TRAJ, AXIS_<letter> and JOINT_<number>.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -25,7 +26,8 @@ struct IniAxis {
 };
 
 struct IniAxes {
-    std::vector<IniAxis> axes;        // in the order of COORDINATES, each letter once
+    std::vector<IniAxis> axes;                    // in the order of COORDINATES, each letter once
+    std::optional<std::int64_t> servo_period_ns;  // [EMCMOT] SERVO_PERIOD
     std::vector<std::string> faults;  // "machine.ini:12: [AXIS_X] MAX_LIMIT: got ..., wanted ..."
 };
 

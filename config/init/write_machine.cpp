@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 
 #include "config/text/quote_text.hpp"
@@ -304,11 +305,25 @@ std::string pairs_text(const std::vector<RoleGuess>& roles) {
     return text;
 }
 
+/// Whole microseconds; what is left takes its part of the 1 % that every proof allows the period.
+std::string period_text(std::int64_t period_ns) {
+    if (period_ns == 0) {
+        return {};
+    }
+    const std::int64_t sample_us = (period_ns + 500) / 1000;
+    const double off = 100.0 * static_cast<double>(period_ns - 1000 * sample_us) /
+                       (1000.0 * static_cast<double>(sample_us));
+    const std::string rest =
+        off == 0 ? ""
+                 : fmt::format("; {:.3f} % of the 1 % that the period may be off", std::abs(off));
+    return fmt::format("  sample_us: {}  # SERVO_PERIOD is {} ns{}\n", sample_us, period_ns, rest);
+}
+
 }  // namespace
 
 std::string machine_file_text(const std::string& name, const std::vector<SurveyedMesh>& meshes,
                               const std::vector<RoleGuess>& roles,
-                              const std::vector<IniAxis>& known) {
+                              const std::vector<IniAxis>& known, std::int64_t period_ns) {
     std::string text = fmt::format("{}name: {}\n", kHead + 1, quoted(name, 128));
     text += axes_text(roles, known) + kBodiesHead;
     for (const RoleGuess& role : roles) {
@@ -323,8 +338,10 @@ std::string machine_file_text(const std::string& name, const std::vector<Surveye
         "guard:\n  stop_reversal: jerk_limited  {}: none where every stop channel promises it\n",
         kGuessMark);
     text +=
-        "\n# The CAN frames are axguard's own, 1000 a second; format: describes others.\n"
-        "can:\n  permit: 2  # version; board.md is what a board must do\n"
+        fmt::format("\n# The CAN frames are axguard's own{}; format: describes others.\ncan:\n{}",
+                    period_ns == 0 ? ", 1000 a second" : "", period_text(period_ns));
+    text +=
+        "  permit: 2  # version; board.md is what a board must do\n"
         "  hashes: required  # the board has to send the hashes that axguard check prints\n";
     return text;
 }

@@ -20,10 +20,12 @@ inline constexpr const char* kReviewMark = "REVIEW:";
 /// @param meshes  without faults, file names as they shall stand in the file
 /// @param roles   of exactly these meshes
 /// @param known   what is known of axes; the rest is guessed. Axes that no body has are named alone
+/// @param period_ns  of the board; 0: not known, can.sample_us is left at its default
 /// @return        commented YAML; parse_machine() accepts it (two surfaces at least)
 [[nodiscard]] std::string machine_file_text(const std::string& name,
                                             const std::vector<SurveyedMesh>& meshes,
                                             const std::vector<RoleGuess>& roles,
-                                            const std::vector<IniAxis>& known = {});
+                                            const std::vector<IniAxis>& known = {},
+                                            std::int64_t period_ns = 0);
 
 }  // namespace axg

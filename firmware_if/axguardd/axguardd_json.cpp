@@ -125,6 +125,7 @@ std::string describe_run(const RunSubject& subject, const LiveEnd& end) {
         }
     }
     const LiveCounters& counters = end.counters;
+    const auto period_us = static_cast<double>(end.input.measured_period_ns) / 1000;
     const nlohmann::json document{{"machine", subject.machine},
                                   {"bus", subject.bus},
                                   {"mode", subject.mode},
@@ -147,6 +148,7 @@ std::string describe_run(const RunSubject& subject, const LiveEnd& end) {
                                   {"samples_lost", end.input.samples_lost},
                                   {"frames_dropped", end.frames_dropped},
                                   {"records_lost", counters.records_lost},
+                                  {"measured_period_us", period_us},
                                   {"black_box", end.dump},
                                   {"receiver_faults", faults}};
     return text_of(document);

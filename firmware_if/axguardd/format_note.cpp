@@ -41,6 +41,14 @@ char* write_cause(const LiveNote& note, const Machine& machine, char* out, std::
                : end;
 }
 
+char* write_period(const LiveNote& note, char* out, std::size_t size) {
+    return fmt::format_to_n(out, size,
+                            "; measured {:.3f} us, declared {:.0f} us: correct can.sample_us, or "
+                            "the board's period",
+                            note.theirs / 1000.0, note.ours / 1000.0)
+        .out;
+}
+
 char* write_body(const LiveNote& note, const Machine& machine, char* out, std::size_t size) {
     switch (note.kind) {
         case LiveNote::Kind::phase: {
@@ -55,10 +63,13 @@ char* write_body(const LiveNote& note, const Machine& machine, char* out, std::s
             const std::string_view axis = note.axis < machine.axes.size()
                                               ? std::string_view(machine.axes[note.axis].name)
                                               : std::string_view("-");
-            return fmt::format_to_n(out, size, "input: {} ({}), frame {:03X}, axis {}",
-                                    fault_row(note.fault).name, fault_row(note.fault).meaning,
-                                    note.frame_id, axis)
-                .out;
+            char* const end = fmt::format_to_n(out, size, "input: {} ({}), frame {:03X}, axis {}",
+                                               fault_row(note.fault).name,
+                                               fault_row(note.fault).meaning, note.frame_id, axis)
+                                  .out;
+            return note.fault == ReceiverFault::sync_period
+                       ? write_period(note, end, size - static_cast<std::size_t>(end - out))
+                       : end;
         }
         case LiveNote::Kind::wire:
             return note.frame_id == 0

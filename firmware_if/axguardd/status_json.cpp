@@ -123,6 +123,13 @@ void put_state(Line& line, const LiveView& view, const GuardWhy& why, const Mach
     } else {
         line.put(",\"session\":null");
     }
+    line.put(",\"sample_us\":{}", machine.can.sample_us);
+    if (view.input.measured_period_ns != 0) {
+        line.put(",\"period_us\":{:.3f}",
+                 static_cast<double>(view.input.measured_period_ns) / 1000);
+    } else {
+        line.put(",\"period_us\":null");
+    }
     line.put(",\"hashes\":\"{}\"", view.compares_hashes ? "required" : "none");
 }
 
@@ -176,6 +183,9 @@ bool is_flag(const Json& value) {
 }
 bool is_flag_or_null(const Json& value) {
     return value.is_boolean() || value.is_null();
+}
+bool is_number_or_null(const Json& value) {
+    return value.is_number() || value.is_null();
 }
 bool is_count(const Json& value) {
     return value.is_number_unsigned();
@@ -248,7 +258,7 @@ constexpr std::array<StatusKey, 7> kHeadKeys{{{"axguardd", is_text},
                                               {"mode", is_text},
                                               {"board_test", is_board_test},
                                               {"phase", is_text}}};
-constexpr std::array<StatusKey, 26> kViewKeys{{{"age_ms", is_count},
+constexpr std::array<StatusKey, 28> kViewKeys{{{"age_ms", is_count},
                                                {"phase_ms", is_count},
                                                {"cause", is_text},
                                                {"reason", is_text},
@@ -261,6 +271,8 @@ constexpr std::array<StatusKey, 26> kViewKeys{{{"age_ms", is_count},
                                                {"stands", is_flag},
                                                {"confirmed", is_flag},
                                                {"session", is_flag_or_null},
+                                               {"sample_us", is_count},
+                                               {"period_us", is_number_or_null},
                                                {"hashes", is_hashes},
                                                {"pictures", is_count},
                                                {"permits", is_count},
@@ -411,6 +423,10 @@ std::string words_of_view(const Json& json) {
                        json.at("session").is_null() ? ""
                        : is_at(json, "session")     ? ", board session received"
                                                     : ", no board session");
+    if (!json.at("period_us").is_null()) {
+        out += fmt::format("period {:.3f} us, declared {} us\n", json.at("period_us").get<double>(),
+                           count_at(json, "sample_us"));
+    }
     if (json.at("hashes") == "none") {
         out += "hashes are not compared: verify that the board is configured for this machine\n";
     }

@@ -356,8 +356,9 @@ void BoardPlayer::abandon_listening() {
 /// The receiver goes on after each: the test is not over for it.
 void BoardPlayer::note_fault(const ReceiverEvent& event) {
     if (event.kind == ReceiverEvent::Kind::fault) {
-        if (stage_ != Stage::listen) {
-            watch_.on_fault(event);
+        // Before the stages too: with a wrong period nothing is judged.
+        if (stage_ != Stage::listen || event.fault == ReceiverFault::sync_period) {
+            watch_.on_fault(event, receiver_.counters().measured_period_ns);
         } else if (event.severity == Severity::stop) {
             heard_ = fault_row(event.fault).meaning;
         }

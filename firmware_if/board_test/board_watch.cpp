@@ -38,9 +38,18 @@ void BoardWatch::fail(Watched watched, std::int64_t at_us, std::string found) {
     }
 }
 
-void BoardWatch::on_fault(const ReceiverEvent& event) {
+void BoardWatch::on_fault(const ReceiverEvent& event, std::int64_t measured_period_ns) {
+    if (event.fault == ReceiverFault::sync_period) {
+        has_wrong_period_ = true;
+        fail(Watched::samples, event.time_us,
+             fmt::format("a period of {:.1f} us (expected can.sample_us {} to 1 %)",
+                         static_cast<double>(measured_period_ns) / 1000, machine_.can.sample_us));
+        return;
+    }
     const FaultRow& row = fault_row(event.fault);
-    if (row.severity == Severity::ignore || is_of_the_host(event.fault)) {
+    const bool is_ignored =
+        row.severity == Severity::ignore && event.fault != ReceiverFault::repeated;
+    if (is_ignored || is_of_the_host(event.fault)) {
         return;
     }
     const Watched watched = event.fault == ReceiverFault::held_up     ? Watched::session
@@ -91,13 +100,6 @@ void BoardWatch::judge_sync(const ReceiverEvent& event) {
     last_sample_ = snapshot.sample;
     last_us_ = snapshot.latched_us;
     ++samples_;
-    const double off = std::abs(sync().mean_us - period_us) / period_us;
-    if (samples_ % kPeriodSamples == 0 && off > kPeriodShare) {
-        has_wrong_period_ = true;
-        fail(Watched::samples, event.time_us,
-             fmt::format("a period of {:.1f} us (expected can.sample_us {} to 1 %)", sync().mean_us,
-                         machine_.can.sample_us));
-    }
 }
 
 void BoardWatch::judge_tool(const AxisSnapshot& snapshot, bool is_braking) {

@@ -40,7 +40,8 @@ class BoardWatch {
     /// A rule had its chance.
     void note(Watched watched) noexcept { state(watched).is_judged = true; }
 
-    void on_fault(const ReceiverEvent& event);
+    /// @param measured_period_ns  ReceiverCounters::measured_period_ns
+    void on_fault(const ReceiverEvent& event, std::int64_t measured_period_ns);
     void on_session(const Session& session, std::int64_t time_us);
     /// @param is_braking  the board is in a stop
     void on_sample(const ReceiverEvent& event, const MotionRecord& record, bool is_braking);
@@ -63,7 +64,6 @@ class BoardWatch {
 
   private:
     static constexpr std::uint64_t kSampleFaultsMax = 20;
-    static constexpr std::uint64_t kPeriodSamples = 200;
 
     using Bounds = std::array<std::uint8_t, kAxesMax>;
     [[nodiscard]] WatchedState& state(Watched watched) noexcept {

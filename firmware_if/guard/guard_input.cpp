@@ -116,13 +116,30 @@ void GuardNode::note_hash(const HashFrame& theirs, std::int64_t now_us) noexcept
          now_us);
 }
 
+void GuardNode::note_fault(const ReceiverEvent& event, std::int64_t now_us) noexcept {
+    LiveNote out{.kind = LiveNote::Kind::input,
+                 .fault = event.fault,
+                 .frame_id = event.frame_id,
+                 .axis = event.axis};
+    if (event.fault == ReceiverFault::sync_period) {
+        out.ours = static_cast<std::uint32_t>(1000 * times_.period_us);
+        out.theirs = static_cast<std::uint32_t>(receiver_.counters().measured_period_ns);
+    }
+    note(out, now_us);
+}
+
 void GuardNode::on_receiver(const ReceiverEvent& event, std::int64_t now_us) noexcept {
     if (event.kind == ReceiverEvent::Kind::snapshot) {
         ++counters_.snapshots;
-        period_.follow(event.snapshot.arrived_us, guard_.phase != GuardPhase::armed);
-        // Nothing more is expected in this period: its sample was heard, or is lost.
-        const bool is_over = owed_ == completed_ && (has_snapshot_ || event.samples_lost != 0);
-        if (is_over && period_.is_of_next(event.snapshot.arrived_us)) {
+        period_.follow(event.snapshot.arrived_us,
+                       guard_.phase != GuardPhase::armed && guard_.good == 0);
+        // A period is that of one sample. Its own was evaluated, or is lost: this one is of the
+        // next, however late the bus delivered the one before.
+        const std::int64_t arrived_us = event.snapshot.arrived_us;
+        const bool is_over = has_snapshot_
+                                 ? period_.may_end(arrived_us)
+                                 : event.samples_lost != 0 && period_.is_of_next(arrived_us);
+        if (owed_ == completed_ && is_over) {
             end_period(now_us);
         }
         has_snapshot_ = true;
@@ -133,11 +150,7 @@ void GuardNode::on_receiver(const ReceiverEvent& event, std::int64_t now_us) noe
     } else if (event.kind == ReceiverEvent::Kind::look_ahead) {
         submit(LiveQuery::Kind::look_ahead, event, now_us);
     } else if (event.kind == ReceiverEvent::Kind::fault && event.severity == Severity::stop) {
-        note({.kind = LiveNote::Kind::input,
-              .fault = event.fault,
-              .frame_id = event.frame_id,
-              .axis = event.axis},
-             now_us);
+        note_fault(event, now_us);
         fail(GuardFault::input, now_us);
     } else if (event.kind == ReceiverEvent::Kind::fault && event.severity == Severity::drop) {
         fail(GuardFault::input_noise, now_us);

@@ -53,6 +53,8 @@ const char* to_text(WithheldPermit::Why why) noexcept {
             return "motion";
         case WithheldPermit::Why::session:
             return "no session";
+        case WithheldPermit::Why::period:
+            return "period not shown";
     }
     return "?";
 }
@@ -71,9 +73,9 @@ GuardNode::GuardNode(const Machine& machine, LiveOptions options, CanTransport& 
       latch_(latch),
       times_(time_limits(machine)),
       limits_(live_limits(times_)),
-      receiver_(machine, {.refuse_local = !options.accepts_local}),
-      standstill_(machine, {.refuse_local = !options.accepts_local}, standstill_rules(machine),
-                  now_us),
+      receiver_(machine, receiver_options(options)),
+      standstill_(machine, {.refuse_local = !options.accepts_local, .period = PeriodUse::ignored},
+                  standstill_rules(machine), now_us),
       guard_(start_guard(is_latched(latch))),
       outbox_(wire_, times_.echo_us),
       handshake_(machine.can, options.hashes),
@@ -104,7 +106,7 @@ void GuardNode::begin(std::int64_t now_us) noexcept {
     ledger_.clear();
     logged_ = {};
     withheld_ = {};
-    next_log_us_ = next_session_note_us_ = now_us + kLogUs;
+    next_log_us_ = next_session_note_us_ = next_period_note_us_ = now_us + kLogUs;
     handshake_.begin(now_us);
     submit(LiveQuery::Kind::self_test, {}, now_us);
 }
@@ -210,6 +212,11 @@ void GuardNode::on_result(const LiveResult& live_result, std::int64_t now_us) no
     if (event.kind == GuardEventKind::own_stop && guard_.phase == GuardPhase::armed) {
         note_own_stop();
     }
+    if (!receiver_.is_period_shown()) {  // it is not VALID, so nothing is permitted
+        withheld_ =
+            result.reason == StopReason::none ? WithheldPermit{.why = Why::period} : withheld_;
+        note_period(now_us);
+    }
     if (has_session(machine_.can)) {
         hints_ = hints_of(live_result.result, live_result.sync_counter);
         has_hints_ = true;
@@ -223,6 +230,18 @@ void GuardNode::on_result(const LiveResult& live_result, std::int64_t now_us) no
     if (output.sends_permit) {
         send_permit(live_result, now_us);
     }
+}
+
+/// Once a second while it lasts: a second is more than a right period takes at 1 kHz.
+void GuardNode::note_period(std::int64_t now_us) noexcept {
+    if (now_us < next_period_note_us_) {
+        return;
+    }
+    next_period_note_us_ = now_us + kLogUs;
+    note({.kind = LiveNote::Kind::wire,
+          .words = "not ready: no window of samples shows that the board's period is "
+                   "can.sample_us to 1 % (axguard inspect prints it)"},
+         now_us);
 }
 
 /// Whether an axis moves while the frames say that all stand: then nothing they say is believed

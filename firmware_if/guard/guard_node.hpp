@@ -62,6 +62,7 @@ struct WithheldPermit {
         late,         // the result came after the deadline
         motion,       // an axis moves while the frames say that all stand
         session,      // the board has not said its session
+        period,       // nothing has shown yet that the board's period is can.sample_us to 1 %
     };
     Why why = Why::no_sample;
     StopReason reason = StopReason::none;
@@ -91,10 +92,20 @@ struct LiveOptions {
     // Of a recorded or a simulated motion it is only supposed that a person armed, and when: the
     // axes may move. Never set where a guard is deployed (style.deployed_symbols).
     bool supposes_arming = false;
+    // The board's period is only supposed to be can.sample_us until a window refutes it: of a
+    // trace, whose own period was taken, and of a simulated board. Never set where a guard is
+    // deployed.
+    bool supposes_period = false;
     // can.sync: guard, and SYNC of the guard of then is in the recording: none is sent, and what
     // comes as an own frame is it. Never set where a guard is deployed.
     bool supposes_sync = false;
 };
+
+/// How the guard's own receiver reads.
+[[nodiscard]] constexpr ReceiverOptions receiver_options(const LiveOptions& options) noexcept {
+    return {.refuse_local = !options.accepts_local,
+            .period = options.supposes_period ? PeriodUse::supposed : PeriodUse::proven};
+}
 
 class GuardNode {
   public:
@@ -175,6 +186,8 @@ class GuardNode {
     void on_own_sync(const CanFrame& frame, std::int64_t now_us) noexcept;
     void on_wire_fault(const char* words, std::int64_t now_us) noexcept;
     void on_receiver(const ReceiverEvent& event, std::int64_t now_us) noexcept;
+    void note_period(std::int64_t now_us) noexcept;
+    void note_fault(const ReceiverEvent& event, std::int64_t now_us) noexcept;
     void check_standstill(std::int64_t now_us) noexcept;
     [[nodiscard]] bool contradicts(std::int64_t now_us) noexcept;
     void log_withheld(const CycleResult& result, std::int64_t now_us) noexcept;
@@ -226,7 +239,7 @@ class GuardNode {
     CycleResult logged_{};
     std::int64_t next_log_us_ = 0;
     std::uint32_t contradicted_axis_ = kNoIndex;  // as it was when that was looked at last
-    std::int64_t next_session_note_us_ = 0;
+    std::int64_t next_session_note_us_ = 0, next_period_note_us_ = 0;
     Hints hints_;             // of the newest result
     bool has_hints_ = false;  // that was not sent yet
     OperatorDesk operator_;

@@ -59,7 +59,7 @@ struct LiveNote {
     std::uint32_t frame_id = 0, axis = kNoIndex;
     const char* words = "";  // wire, refused, motion, person: static text
     std::uint32_t count = 0;
-    std::uint32_t ours = 0, theirs = 0;  // hashes
+    std::uint32_t ours = 0, theirs = 0;  // hashes; of sync_period: ns, measured is theirs
 };
 
 }  // namespace axg

@@ -24,7 +24,7 @@ class PeriodClock {
     void restart(std::int64_t now_us) noexcept { next_us_ = now_us + period_us_; }
 
     /// A snapshot was complete at this instant.
-    /// @param may_jump  nothing is permitted yet: no need to lean
+    /// @param may_jump  nothing is permitted yet, and no period was good: no need to lean
     void follow(std::int64_t arrived_us, bool may_jump) noexcept {
         std::int64_t off_us = (arrived_us - slack_us_ - next_us_) % period_us_;
         off_us += off_us < -period_us_ / 2 ? period_us_ : 0;
@@ -32,6 +32,12 @@ class PeriodClock {
         const std::int64_t most_us = period_us_ / kLeanShare;
         const bool jumps = may_jump && std::abs(off_us) > period_us_ / 4;
         next_us_ += jumps ? off_us : std::clamp(off_us / 4, -most_us, most_us);
+    }
+
+    /// By one that comes before the end. Never twice in a row: the end would run away from the
+    /// clock, and what is missing would be missed late.
+    [[nodiscard]] bool may_end(std::int64_t arrived_us) const noexcept {
+        return next_us_ - arrived_us < period_us_;
     }
 
     /// It is nearer to where snapshots are expected in the next period than in this one: after a

@@ -14,6 +14,7 @@
 #include <time.h>
 
 #include "firmware_if/board/axguard_board.h"
+#include "firmware_if/linuxcnc/axguard_period.h"
 #include "firmware_if/linuxcnc/axguard_wire.h"
 
 MODULE_AUTHOR("axguard");
@@ -74,6 +75,7 @@ typedef struct stop_state {
     bool waits;     // simulation-wait-us: somebody answers
     uint32_t ramp_periods;
     int64_t clock_ns;  // of the host, when this period began
+    axg_period period;
 } stop_state;
 
 static int comp_id;
@@ -216,7 +218,7 @@ static void arm(void) {
         return;
     }
     --state.arm_left;
-    if (!state.guard_is_ready) {
+    if (!state.guard_is_ready || !state.period.is_shown) {
         return;
     }
     const uint32_t step = (uint32_t)(rtapi_get_time() & 0xFFFF) | 1U;
@@ -462,6 +464,18 @@ static void check_clock(long period_ns) {
     const bool is_late = state.clock_ns - before_ns > (int64_t)period_ns + period_ns / 2;
     if (before_ns != 0 && is_late && *pins->simulation_wait_us == 0) {
         ++*pins->late;
+        state.period.has_windows = false;
+        axg_board_stop(&state.board, now_us());
+    }
+}
+
+// Where the thread waits for the guard its periods have no length.
+static void check_period(void) {
+    if (*pins->simulation_wait_us != 0) {
+        state.period = (axg_period){.is_shown = true};
+    } else if (axg_period_note(&state.period, state.count, state.clock_ns, state.period_us)) {
+        rtapi_print_msg(RTAPI_MSG_ERR, AXG_PERIOD_WORDS, (long)state.period.measured_ns,
+                        (unsigned)state.period_us);
         axg_board_stop(&state.board, now_us());
     }
 }
@@ -472,6 +486,7 @@ static void update(void* unused, long period_ns) {
     ++state.count;
     state.period_us = (uint64_t)(period_ns + 500) / 1000;
     check_clock(period_ns);
+    check_period();
     take_messages();
     wait_for_the_guard();
     select_jog();

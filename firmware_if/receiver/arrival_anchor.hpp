@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "firmware_if/receiver/period_watch.hpp"
+
 namespace axg {
 
 /// Of a period.
@@ -36,7 +38,6 @@ struct ArrivalNumber {
 /// two numbers too small, an error of two periods. With a quarter of a period of jitter none is.
 [[nodiscard]] constexpr ArrivalNumber number_arrival(ArrivalAnchor& anchor,
                                                      std::int64_t arrived_us) noexcept {
-    constexpr std::int64_t kPeriodPart = 100;  // the board's period is sample_us to 1 percent
     constexpr std::int64_t kStepsMax = 1'000'000;
     if (!anchor.has_sample) {
         anchor.has_sample = true;

@@ -6,11 +6,6 @@
 #include "firmware_if/receiver/axis_receiver.hpp"
 
 namespace axg {
-namespace {
-
-constexpr std::int64_t kPeriodPart = 100;  // the board's period is sample_us to 1 percent
-
-}  // namespace
 
 void AxisReceiver::begin_set(std::uint8_t sample_index) noexcept {
     seen_ = 0;
@@ -92,7 +87,8 @@ ReceiverEvent AxisReceiver::deliver(Latch latch, std::uint32_t steps,
     snapshot_.sample = last_sample_;
     ++counters_.snapshots;
     good_in_row_ = static_cast<std::uint8_t>(std::min(good_in_row_ + 1, 255));
-    if (state_ == ReceiverState::init && good_in_row_ >= init_snapshots_ && is_heartbeat_fresh()) {
+    if (state_ == ReceiverState::init && good_in_row_ >= init_snapshots_ && is_heartbeat_fresh() &&
+        is_period_shown()) {
         state_ = ReceiverState::valid;
     }
     ReceiverEvent event = this->event();

@@ -3,6 +3,7 @@
 #include "firmware_if/receiver/axis_receiver.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/machine/can_id.hpp"
 
@@ -17,6 +18,23 @@ constexpr std::uint8_t kControllerRxOverflow = 0x01, kControllerRxPassive = 0x10
 // A counter that comes round sooner would take half of what is older for lost frames.
 constexpr std::uint16_t kWideCounter = 14;
 constexpr std::uint8_t kNarrowSteps = 3;
+
+// Of so many SYNCs in a row one at least is late by no more than a period.
+constexpr std::uint32_t kSyncUnit = 8;
+// Without a stated jitter two samples may be numbered so many periods short (arrival_anchor.hpp).
+constexpr std::int64_t kNumbersOff = 2;
+
+std::int64_t latch_jitter_us(const Machine& machine) noexcept {
+    return std::lround(std::ceil(machine.guard.latch_jitter_s * 1e6));
+}
+
+/// A clock that is read at the latch proves by its jitter; one that is read later refutes nothing
+/// while rule 6 bears it.
+PeriodTerms sender_terms(const Machine& machine) noexcept {
+    const std::int64_t period_us = machine.can.sample_us;
+    const std::int64_t off_us = latch_jitter_us(machine) + 1;
+    return {.period_us = period_us, .right_us = off_us, .wrong_us = off_us + period_us / 5};
+}
 
 /// @param modulus  of the counter; 0: the frame has none
 SequenceCheck sequence_of(const CanLayout& can, std::uint16_t modulus) noexcept {
@@ -45,6 +63,26 @@ ReceiverFault fault_of(FrameStatus status) noexcept {
     return ReceiverFault::bad_format;
 }
 
+PeriodTerms sync_terms(const Machine& machine) noexcept {
+    const CanLayout& can = machine.can;
+    const std::int64_t period_us = can.sample_us;
+    const std::int64_t numbered_us =
+        can.arrival_jitter_us != 0 ? can.arrival_jitter_us : (1 + kNumbersOff) * period_us;
+    const std::int64_t late_us = can.format == CanFormat::signals ? numbered_us : period_us;
+    const std::int64_t off_us = late_us + latch_jitter_us(machine) + 1;
+    return {.period_us = period_us, .right_us = off_us, .wrong_us = off_us, .unit = kSyncUnit};
+}
+
+bool measures_period(const CanLayout& can) noexcept {
+    return !can.guard_sends_sync;
+}
+
+std::string_view unmeasured_period(const CanLayout& can) noexcept {
+    return measures_period(can) ? ""
+                                : "can.sample_us: with can.sync: guard no frame shows in which "
+                                  "period the drives latch; expected: at each SYNC";
+}
+
 const char* to_text(ReceiverState state) noexcept {
     switch (state) {
         case ReceiverState::invalid:
@@ -67,6 +105,7 @@ ReceiverCounters operator+(ReceiverCounters a, const ReceiverCounters& b) noexce
     a.estimated += b.estimated;
     a.clock_steps += b.clock_steps;
     a.ignored_invalid += b.ignored_invalid;
+    a.measured_period_ns = b.measured_period_ns != 0 ? b.measured_period_ns : a.measured_period_ns;
     for (std::size_t i = 0; i < a.faults.size(); ++i) {
         a.faults[i] += b.faults[i];
     }
@@ -87,6 +126,9 @@ AxisReceiver::AxisReceiver(const Machine& machine, ReceiverOptions options) noex
     heartbeat_timeout_us_ = can.heartbeat_timeout_us;
     index_modulus_ = can.format == CanFormat::fd ? kSyncCounterMax : 16;
     sync_window_us_ = can.sync_window_us != 0 ? can.sync_window_us : can.sample_us;
+    sync_period_.terms = sync_terms(machine);
+    sender_period_.terms = sender_terms(machine);
+    measures_period_ = measures_period(can);
     arrivals_.period_us = can.sample_us;
     arrivals_.jitter_us = can.arrival_jitter_us != 0
                               ? can.arrival_jitter_us
@@ -120,6 +162,9 @@ void AxisReceiver::forget() noexcept {
     drives_ = {};
     arrivals_.has_sample = false;
     arrival_steps_ = 0;
+    restart(sync_period_);
+    restart(sender_period_);
+    is_period_shown_ = false;
     has_last_ = has_sender_ = false;
     good_in_row_ = estimates_ = 0;
 }
@@ -146,6 +191,20 @@ ReceiverEvent AxisReceiver::fault(ReceiverFault kind, std::uint32_t frame_id,
     event.frame_id = frame_id;
     event.axis = axis;
     return event;
+}
+
+/// Also remembers that it was shown to be right.
+bool AxisReceiver::is_period_wrong(PeriodWatch& watch, std::int64_t steps,
+                                   std::int64_t stamp_us) noexcept {
+    if (options_.period == PeriodUse::ignored || !measures_period_) {
+        return false;
+    }
+    const PeriodVerdict verdict = judge_stamp(watch, steps, stamp_us);
+    if (verdict != PeriodVerdict::unknown) {
+        counters_.measured_period_ns = watch.measured_ns;
+    }
+    is_period_shown_ = is_period_shown_ || verdict == PeriodVerdict::right;
+    return verdict == PeriodVerdict::wrong;
 }
 
 void AxisReceiver::advance_clock(std::int64_t time_us) noexcept {

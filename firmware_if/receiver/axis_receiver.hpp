@@ -7,11 +7,13 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 
 #include "core/machine/axis_snapshot.hpp"
 #include "firmware_if/protocol/axis_frames.hpp"
 #include "firmware_if/protocol/e2e.hpp"
 #include "firmware_if/receiver/arrival_anchor.hpp"
+#include "firmware_if/receiver/period_watch.hpp"
 #include "firmware_if/receiver/receiver_faults.hpp"
 #include "firmware_if/receiver/session_watch.hpp"
 #include "firmware_if/receiver/snapshot_check.hpp"
@@ -63,6 +65,8 @@ struct ReceiverCounters {
     std::uint64_t estimated = 0;        // snapshots whose SYNC was lost: latch instant extrapolated
     std::uint64_t clock_steps = 0;      // a frame's stamp lay before the one before
     std::uint64_t ignored_invalid = 0;  // frames that came while INVALID
+    // The mean period of the last window that proved or refuted the declared one; 0: none did.
+    std::int64_t measured_period_ns = 0;
     std::array<std::uint64_t, kReceiverFaults> faults{};
 
     [[nodiscard]] std::uint64_t of(ReceiverFault fault) const noexcept {
@@ -73,10 +77,25 @@ struct ReceiverCounters {
 /// Of two receivers, one after the other.
 [[nodiscard]] ReceiverCounters operator+(ReceiverCounters a, const ReceiverCounters& b) noexcept;
 
+/// What the board's period is held to (rule 6).
+enum class PeriodUse : std::uint8_t {
+    supposed = 0,  // one shown to be wrong stops: a trace, whose own period is taken
+    proven,        // and VALID waits until it is shown to be right: whoever gives permits
+    ignored,       // whoever reads positions alone
+};
+
 struct ReceiverOptions {
     bool refuse_local = false;  // live: a frame of ours sent from this host is a second sender
     bool takes_jumps = false;   // for whoever measures speeds: rule 8 looks at the travel alone
+    PeriodUse period = PeriodUse::supposed;
 };
+
+/// Whether any stamp of the layout measures the board's period: not where SYNC is the guard's own.
+[[nodiscard]] bool measures_period(const CanLayout& can) noexcept;
+/// What the stamps of SYNC, or arrivals, show of the period.
+[[nodiscard]] PeriodTerms sync_terms(const Machine& machine) noexcept;
+/// For lists of what nothing measures: the promise about the period; empty: it is measured.
+[[nodiscard]] std::string_view unmeasured_period(const CanLayout& can) noexcept;
 
 /// A frame that can not be decoded.
 [[nodiscard]] ReceiverFault fault_of(FrameStatus status) noexcept;
@@ -97,6 +116,14 @@ class AxisReceiver {
 
     /// A person has looked: INVALID becomes INIT, and everything is learnt anew.
     void acknowledge() noexcept;
+
+    /// Whether a window has shown that the period is right since the last acknowledge; so it is
+    /// where nothing measures it, and where it is supposed.
+    [[nodiscard]] bool is_period_shown() const noexcept {
+        return is_period_shown_ || options_.period != PeriodUse::proven || !measures_period_;
+    }
+    /// It was shown before the first frame: of a recording that begins in the middle.
+    void suppose_period() noexcept { is_period_shown_ = true; }
 
     /// Of the newest sample with this SYNC counter, one of the last 240; nothing: the board's
     /// session is not known, or older than kSessionTimeoutUs.
@@ -166,8 +193,10 @@ class AxisReceiver {
     ReceiverEvent finish(const AxisFrameContent& content, std::uint32_t frame_id) noexcept;
     ReceiverEvent deliver(Latch latch, std::uint32_t steps, std::uint32_t frame_id) noexcept;
     [[nodiscard]] Latch latch_of(std::uint8_t sample_index, std::uint32_t steps) noexcept;
-    [[nodiscard]] bool sender_clock_is_plausible(std::uint32_t sender_us, std::uint32_t steps,
-                                                 Latch& latch) noexcept;
+    /// sender_clock or sync_period; none: the sample may be used.
+    [[nodiscard]] ReceiverFault judge_sender_clock(std::uint32_t sender_us, Latch& latch) noexcept;
+    [[nodiscard]] bool is_period_wrong(PeriodWatch& watch, std::int64_t steps,
+                                       std::int64_t stamp_us) noexcept;
     [[nodiscard]] Latch dated(std::int64_t stamp_us, std::uint8_t sync_counter,
                               std::uint32_t steps) const noexcept;
     [[nodiscard]] bool is_native() const noexcept {
@@ -206,6 +235,10 @@ class AxisReceiver {
     std::int64_t session_us_ = 0;    // of the last session frame that agreed
     std::uint64_t sync_sample_ = 0;  // counts as SYNC does: its counter is that of the last sample
 
+    PeriodWatch sync_period_;    // by SYNC; format signals: by arrival
+    PeriodWatch sender_period_;  // format fd: by the sender's clock
+    bool measures_period_ = true, is_period_shown_ = false;
+
     DriveGroup drives_;
     ArrivalAnchor arrivals_;           // format signals
     std::uint32_t arrival_steps_ = 0;  // periods since the last snapshot
@@ -226,6 +259,7 @@ class AxisReceiver {
     std::uint8_t good_in_row_ = 0;
     std::uint8_t estimates_ = 0;
     bool has_sender_ = false;
+    std::uint8_t sender_index_ = 0;  // of the sample that the sender's clock dated last
     std::uint32_t last_sender_us_ = 0;
     std::int64_t sender_offset_us_ = 0;   // smallest (our clock - sender's clock) seen, leaking
     std::int64_t sender_elapsed_us_ = 0;  // sender's clock, unwrapped

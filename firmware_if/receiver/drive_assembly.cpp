@@ -37,11 +37,17 @@ ReceiverEvent AxisReceiver::on_drive_sync(const CanFrame& frame) noexcept {
         steps = (counter + counter_max - drives_.sync_counter) % counter_max;
     } else if (drives_.has_sync) {
         steps = std::clamp<std::int64_t>((elapsed_us + period_us / 2) / period_us, 0, kStepsMax);
-        wrong = wrong == ReceiverFault::none && steps == 0 ? ReceiverFault::sync_period : wrong;
+        wrong =
+            wrong == ReceiverFault::none && steps == 0 ? ReceiverFault::sync_early_or_late : wrong;
     }
     const bool is_whole = drives_.is_open && is_complete();
     const bool is_torn = drives_.is_open && !is_whole;
     drives_.is_open = wrong == ReceiverFault::none;
+    // Our clock was set back: it measures nothing across that, and this stamp may be the only one.
+    const bool is_set_back = drives_.has_sync && elapsed_us < 0;
+    if (wrong == ReceiverFault::wrong_sequence || is_set_back) {
+        restart(sync_period_);
+    }
     if (wrong != ReceiverFault::none) {
         return fault(wrong, frame.id);  // drives may answer it: no data until the next good one
     }
@@ -58,10 +64,13 @@ ReceiverEvent AxisReceiver::on_drive_sync(const CanFrame& frame) noexcept {
     begin_set(0);
     window_us_ = now_us_;
     window_frames_ = 0;
+    if (!is_set_back && is_period_wrong(sync_period_, steps, frame.time_us)) {
+        return fault(ReceiverFault::sync_period, frame.id);
+    }
     if (is_torn) {
         return fault(ReceiverFault::torn, frame.id);
     }
-    return is_in_time ? event() : fault(ReceiverFault::sync_period, frame.id);
+    return is_in_time ? event() : fault(ReceiverFault::sync_early_or_late, frame.id);
 }
 
 ReceiverEvent AxisReceiver::assemble_drives(const AxisFrameContent& content, std::uint32_t slot,

@@ -9,7 +9,6 @@
 namespace axg {
 namespace {
 
-constexpr std::int64_t kDriftShare = 5000;   // sender clocks drift by at most 200 ppm
 constexpr std::uint8_t kEstimatesMost = 3;   // samples in a row whose SYNC was lost
 constexpr std::int64_t kSyncAgePeriods = 8;  // a stamp older than half the 16 kept is another turn
 // A look-ahead path may overtake the positions of its sample, or replace those that were lost.
@@ -43,21 +42,31 @@ ReceiverEvent AxisReceiver::on_sync(const CanFrame& frame) noexcept {
         return fault(ReceiverFault::repeated, frame.id);  // the earlier stamp stays: the safe one
     }
     if (sequence == Sequence::wrong) {
+        restart(sync_period_);
         return fault(ReceiverFault::wrong_sequence, frame.id);
     }
     bool is_in_time = true;
+    int steps = 1;
     if (last_sync_.counter != 0) {
-        const int steps = (counter + kSyncCounterMax - last_sync_.counter) % kSyncCounterMax;
+        steps = (counter + kSyncCounterMax - last_sync_.counter) % kSyncCounterMax;
         const std::int64_t wanted_us = std::int64_t{steps} * set_.sample_us;
         const std::int64_t off_us = frame.time_us - last_sync_.time_us - wanted_us;
         is_in_time = std::abs(off_us) <= set_.sample_us / 5;
+    }
+    // Our clock was set back: it measures nothing across that, and this stamp may be the only one.
+    const bool is_set_back = last_sync_.counter != 0 && frame.time_us < last_sync_.time_us;
+    if (is_set_back) {
+        restart(sync_period_);
     }
     // The frame's own stamp, even where it lies before the clock: a sample may only look older.
     last_sync_ = {counter, frame.time_us};
     sync_stamps_[index % 16U] = last_sync_;
     window_us_ = now_us_;
     window_frames_ = 0;
-    return is_in_time ? event() : fault(ReceiverFault::sync_period, frame.id);
+    if (!is_set_back && is_period_wrong(sync_period_, steps, frame.time_us)) {
+        return fault(ReceiverFault::sync_period, frame.id);
+    }
+    return is_in_time ? event() : fault(ReceiverFault::sync_early_or_late, frame.id);
 }
 
 ReceiverEvent AxisReceiver::on_heartbeat(const CanFrame& frame) noexcept {
@@ -166,27 +175,29 @@ AxisReceiver::Latch AxisReceiver::latch_of(std::uint8_t sample_index,
 
 /// A sender whose clock stands while its counter runs repeats old values in fresh frames. Where its
 /// clock shows that the frames were held up together with their SYNC, the sample is as old as the
-/// clock says.
-bool AxisReceiver::sender_clock_is_plausible(std::uint32_t sender_us, std::uint32_t steps,
-                                             Latch& latch) noexcept {
-    if (!has_sender_) {
-        has_sender_ = true;
-        last_sender_us_ = sender_us;
-        sender_elapsed_us_ = 0;
-        sender_offset_us_ = latch.time_us;
-        return true;
-    }
+/// clock says. Its periods are counted from the sample that it dated last, delivered or not.
+ReceiverFault AxisReceiver::judge_sender_clock(std::uint32_t sender_us, Latch& latch) noexcept {
+    const std::uint32_t steps = (set_index_ + index_modulus_ - sender_index_) % index_modulus_;
     const std::int64_t elapsed_us = static_cast<std::uint32_t>(sender_us - last_sender_us_);
     const std::int64_t wanted_us = std::int64_t{steps} * set_.sample_us;
-    if (std::abs(elapsed_us - wanted_us) * 5 > wanted_us) {
-        return false;  // the reference stays: a clock that stands is refused until it is stale
+    if (has_sender_ && std::abs(elapsed_us - wanted_us) * 5 > wanted_us) {
+        // The reference stays: a clock that stands is refused until it is stale.
+        return ReceiverFault::sender_clock;
     }
+    sender_index_ = set_index_;
     last_sender_us_ = sender_us;
-    sender_elapsed_us_ += elapsed_us;
-    sender_offset_us_ = std::min(sender_offset_us_ + elapsed_us / kDriftShare + 1,
-                                 latch.time_us - sender_elapsed_us_);
-    latch.time_us = std::min(latch.time_us, sender_elapsed_us_ + sender_offset_us_);
-    return true;
+    if (has_sender_) {
+        sender_elapsed_us_ += elapsed_us;
+        sender_offset_us_ = std::min(sender_offset_us_ + elapsed_us / kClockPart + 1,
+                                     latch.time_us - sender_elapsed_us_);
+        latch.time_us = std::min(latch.time_us, sender_elapsed_us_ + sender_offset_us_);
+    } else {
+        has_sender_ = true;
+        sender_elapsed_us_ = 0;
+        sender_offset_us_ = latch.time_us;
+    }
+    return is_period_wrong(sender_period_, steps, sender_elapsed_us_) ? ReceiverFault::sync_period
+                                                                      : ReceiverFault::none;
 }
 
 ReceiverEvent AxisReceiver::finish(const AxisFrameContent& content,
@@ -198,9 +209,11 @@ ReceiverEvent AxisReceiver::finish(const AxisFrameContent& content,
     if (!latch.is_known) {
         return fault(ReceiverFault::sync_missing, frame_id);
     }
-    if (set_.format == CanFormat::fd &&
-        !sender_clock_is_plausible(content.sender_time_us, steps, latch)) {
-        return fault(ReceiverFault::sender_clock, frame_id);
+    const ReceiverFault wrong = set_.format == CanFormat::fd
+                                    ? judge_sender_clock(content.sender_time_us, latch)
+                                    : ReceiverFault::none;
+    if (wrong != ReceiverFault::none) {
+        return fault(wrong, frame_id);
     }
     return deliver(latch, steps, frame_id);
 }

@@ -14,13 +14,13 @@ constexpr FaultRow kRows[] = {
     {F::remote_frame, S::ignore, "remote_frame", "a remote frame requests one of our ids"},
     {F::error_frame, S::ignore, "error_frame", "the controller reports an error on the bus"},
     {F::rx_passive, S::ignore, "rx_passive", "the controller is error-passive as a receiver"},
-    {F::sync_period, S::ignore, "sync_period",
+    {F::sync_early_or_late, S::ignore, "sync_early_or_late",
      "SYNC was more than a fifth of a period early or late"},
     {F::bad_length, S::drop, "bad_length", "the frame has not exactly the length of its id"},
     {F::bad_format, S::drop, "bad_format", "classical and flexible mixed up, or a reserved value"},
     {F::raw_dlc, S::drop, "raw_dlc", "a classical frame states a length code above 8"},
     {F::bad_crc, S::drop, "bad_crc", "the checksum does not match payload and id"},
-    {F::repeated, S::drop, "repeated", "the frame was received twice"},
+    {F::repeated, S::ignore, "repeated", "the frame was received twice"},
     {F::wrong_sequence, S::drop, "wrong_sequence", "the counter did not advance by one"},
     {F::torn, S::drop, "torn", "a new sample began before the last one was complete"},
     {F::late_sample, S::drop, "late_sample", "a frame of a sample older than the newest"},
@@ -49,6 +49,8 @@ constexpr FaultRow kRows[] = {
      "snapshots without SYNC arrived with more jitter than the speed bounds allow"},
     {F::bad_layout, S::stop, "bad_layout", "the CAN layout does not fit the machine"},
     {F::held_up, S::stop, "held_up", "the board's session frame counts other laps of SYNC"},
+    {F::sync_period, S::stop, "sync_period",
+     "the board's period is not can.sample_us to 1 percent"},
 };
 static_assert(sizeof kRows / sizeof kRows[0] == kReceiverFaults, "one row a fault");
 

@@ -21,7 +21,7 @@ enum class ReceiverFault : std::uint8_t {
     remote_frame,
     error_frame,
     rx_passive,
-    sync_period,
+    sync_early_or_late,
     // drop
     bad_length,
     bad_format,
@@ -56,6 +56,7 @@ enum class ReceiverFault : std::uint8_t {
     arrival_jitter,
     bad_layout,
     held_up,
+    sync_period,
     count,
 };
 inline constexpr std::uint32_t kReceiverFaults = static_cast<std::uint32_t>(ReceiverFault::count);

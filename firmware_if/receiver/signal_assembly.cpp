@@ -26,6 +26,9 @@ ReceiverEvent AxisReceiver::assemble_signals(const AxisFrameContent& content, st
     if (!number.is_in_time) {
         return fault(ReceiverFault::arrival_jitter, frame_id);
     }
+    if (is_period_wrong(sync_period_, number.steps, set_first_us_)) {
+        return fault(ReceiverFault::sync_period, frame_id);
+    }
     const std::uint32_t steps = has_last_ ? arrival_steps_ : 1U;
     const ReceiverEvent event = deliver({true, set_first_us_, 0, set_first_us_}, steps, frame_id);
     arrival_steps_ = event.kind == ReceiverEvent::Kind::snapshot ? 0 : arrival_steps_;

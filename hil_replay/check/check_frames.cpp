@@ -7,6 +7,7 @@
 
 #include "core/machine/can_id.hpp"
 #include "firmware_if/protocol/axis_frames.hpp"
+#include "firmware_if/receiver/axis_receiver.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
 #include "hil_replay/check/check_report.hpp"
 
@@ -167,6 +168,9 @@ void report_frames(CheckReport& report) {
             : fmt::format(", within {} us after SYNC 0x{:03X}{} that counts 1 to {}",
                           can.sync_window_us, can.sync_id,
                           can.guard_sends_sync ? " of the guard" : "", can.sync_counter_max));
+    if (const std::string_view unproven = unmeasured_period(can); !unproven.empty()) {
+        fmt::print(report.words, "  not measured: {}\n", unproven);
+    }
     if (set.signal_count == 0) {
         print_native(report, set);
         print_ids(report);

@@ -69,6 +69,10 @@ void print_note(const LiveNote& note, const Machine& machine, std::FILE* words) 
             break;
         case LiveNote::Kind::input:
             fmt::print(words, "input: {}, frame {:03X}", fault_row(note.fault).name, note.frame_id);
+            if (note.fault == ReceiverFault::sync_period) {
+                fmt::print(words, ", measured {:.3f} us, declared {:.0f} us", note.theirs / 1000.0,
+                           note.ours / 1000.0);
+            }
             break;
         case LiveNote::Kind::hashes:
             fmt::print(words, "hashes: {}: board {:08x}, guard {:08x}", escaped(note.words),

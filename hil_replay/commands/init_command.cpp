@@ -44,8 +44,8 @@ bool has_extension(const fs::path& path, const char* wanted) {
     return extension == wanted;
 }
 
-/// The axes of an INI file; false after a message.
-bool read_ini(const std::string& path, std::vector<IniAxis>& axes) {
+/// Axes and period of an INI file; false after a message.
+bool read_ini(const std::string& path, IniAxes& ini) {
     constexpr std::size_t kBytesMax = 1U << 20U;
     std::string text;
     const SmallFileFault fault = read_small_file(path, kBytesMax, text);
@@ -62,11 +62,10 @@ bool read_ini(const std::string& path, std::vector<IniAxis>& axes) {
         out.wanted = std::move(fault_of.wanted);
         return out;
     };
-    const IniAxes ini = read_linuxcnc_ini(text, escaped(path, 4096), beside);
+    ini = read_linuxcnc_ini(text, escaped(path, 4096), beside);
     for (const std::string& one : ini.faults) {
         fmt::print(stderr, "{}\n", one);
     }
-    axes = ini.axes;
     return ini.faults.empty();
 }
 
@@ -166,7 +165,7 @@ bool is_sound(const std::string& text, const InitOptions& options) {
 
 int init(InitOptions options, const CommandFiles& names) {
     std::vector<std::string> files;
-    std::vector<IniAxis> known;
+    IniAxes known;
     const bool is_ini = has_extension(options.source, ".ini");
     if (options.folder.empty()) {
         const std::string beside = fs::path(options.source).parent_path().string();
@@ -218,7 +217,8 @@ int init(InitOptions options, const CommandFiles& names) {
         return kExitInput;
     }
     const std::string name = escaped(fs::path(options.out).stem().string(), 100);
-    const std::string text = machine_file_text(name, meshes, roles, known);
+    const std::string text =
+        machine_file_text(name, meshes, roles, known.axes, known.servo_period_ns.value_or(0));
     if (!is_sound(text, options)) {
         return kExitInput;
     }

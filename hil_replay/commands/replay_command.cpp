@@ -268,7 +268,8 @@ int replay(const ReplayArguments& arguments, const ReplayObserver& observer) {
         loaded.machine.deadline_us = static_cast<std::uint32_t>(arguments.deadline_us);
     }
     const TraceOptions options{.lenient = arguments.lenient, .device = arguments.device};
-    std::string trace_error = take_trace_shape(arguments.trace, options, loaded.machine);
+    TracePeriod period;
+    std::string trace_error = take_trace_shape(arguments.trace, options, loaded.machine, &period);
     const std::unique_ptr<TraceReader> trace =
         trace_error.empty() ? open_trace(arguments.trace, options, trace_error) : nullptr;
     if (!trace) {
@@ -314,7 +315,8 @@ int replay(const ReplayArguments& arguments, const ReplayObserver& observer) {
                         chosen.gpu_name(),
                         arguments.is_realtime,
                         end,
-                        std::move(lines)};
+                        std::move(lines),
+                        period};
     explain_stops(report);
     print_replay(report, detail_of(arguments.has_details), arguments.json.words());
     if (observer) {

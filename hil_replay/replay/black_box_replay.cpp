@@ -50,6 +50,9 @@ void BlackBoxReplay::on_record(const BlackBoxRecord& record) {
         turn_us_ = time_us;
         is_whole_ = record.sequence == 0;
         runs_in_snapshots_ = runs_in_verdicts_ = !is_whole_;
+        if (!is_whole_) {
+            receiver_.suppose_period();
+        }
     }
     if (time_us != turn_us_) {  // that turn of the bus thread ended with a look at the clock
         on_receiver(receiver_.on_time(turn_us_));

@@ -64,7 +64,7 @@ class BlackBoxReplay {
     BlackBoxReplay(const Machine& machine, GuardChain& chain, const LiveOptions& options)
         : machine_(machine),
           options_(options),
-          receiver_(machine, {.refuse_local = !options.accepts_local}),
+          receiver_(machine, receiver_options(options)),
           chain_(chain) {}
 
     void on_record(const BlackBoxRecord& record);

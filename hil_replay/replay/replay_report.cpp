@@ -45,6 +45,11 @@ std::string first_line(const ReplayReport& report, const StopEvent& stop, const 
     if (stop.reason == StopReason::input) {
         const FaultRow& row = fault_row(stop.fault);
         text += fmt::format(", {}: {}", row.name, row.meaning);
+        if (stop.fault == ReceiverFault::sync_period) {
+            text += fmt::format(" (measured {:.3f} us, used {} us)",
+                                static_cast<double>(stop.measured_period_ns) / 1000,
+                                report.loaded.machine.can.sample_us);
+        }
     }
     return text;
 }

@@ -13,6 +13,7 @@
 #include "hil_replay/replay/replay_run.hpp"
 #include "hil_replay/replay/why_stop.hpp"
 #include "hil_replay/trace/program_lines.hpp"
+#include "hil_replay/trace/trace_period.hpp"
 #include "hil_replay/trace/trace_reader.hpp"
 
 namespace axg {
@@ -28,6 +29,7 @@ struct ReplayReport {
     bool is_realtime = false;
     TraceEnd end{};
     ProgramLines lines{};  // empty: no table of them
+    TracePeriod period{};  // the declared one, and what the trace shows of it
     // Of the run's stops that are about a pair, and of the first sample withheld.
     std::map<const StopEvent*, StopWhy> whys{};
 };

@@ -30,6 +30,20 @@ Json axes_json(const Machine& machine, const AxisSnapshot& snapshot) {
     return axes;
 }
 
+/// Of the machine file, against which a live guard measures; the replay takes the trace's own.
+Json period_json(const ReplayReport& report) {
+    const TracePeriod& period = report.period;
+    Json out{{"declared_us", period.declared_us},
+             {"taken_us", report.loaded.machine.can.sample_us},
+             {"shown", period.verdict == PeriodVerdict::right   ? "right"
+                       : period.verdict == PeriodVerdict::wrong ? "wrong"
+                                                                : "unknown"}};
+    if (period.measured_ns != 0) {
+        out["measured_us"] = static_cast<double>(period.measured_ns) / 1000;
+    }
+    return out;
+}
+
 Json stop_json(const ReplayReport& report, const StopEvent& stop) {
     const Machine& machine = report.loaded.machine;
     Json out{{"time_us", stop.time_us},
@@ -37,6 +51,9 @@ Json stop_json(const ReplayReport& report, const StopEvent& stop) {
              {"samples", stop.samples},
              {"reason", reason_text(stop)}};
     add_stop_cause(machine, stop.reason, stop.pair, stop.fault, stop.limit, out);
+    if (stop.fault == ReceiverFault::sync_period) {
+        out["measured_us"] = static_cast<double>(stop.measured_period_ns) / 1000;
+    }
     add_program_line(report.lines, stop.snapshot.arrived_us, out);
     out["axes"] = axes_json(machine, stop.snapshot);
     if (is_about_distance(stop.reason)) {
@@ -208,6 +225,7 @@ ReplayDocument describe_replay(const ReplayReport& report) {
     if (machine.can.hashes_in_id != 0) {
         out["hashes_compared"] = run.hashes_heard();
     }
+    out["period"] = period_json(report);
     add_course(run, out);
     out["receiver_faults"] = faults_json(counters);
     out["pairs"] = pairs_json(report);

@@ -235,6 +235,7 @@ void ReplayRun::note_fault(GuardFault cause, StopReason reason) {
     note_stop({.cause = cause,
                .reason = reason,
                .fault = guard_->guard().receiver().stop_cause(),
+               .measured_period_ns = guard_->guard().receiver().counters().measured_period_ns,
                .time_us = guard_->now_us(),
                .snapshot = newest_});
     in_episode_ = false;

@@ -90,6 +90,7 @@ struct StopEvent {
     std::uint32_t pair = kNoIndex;
     LimitFact limit{};                          // for left_limits
     ReceiverFault fault = ReceiverFault::none;  // cause input
+    std::int64_t measured_period_ns = 0;        // fault sync_period
     std::int64_t time_us = 0;                   // arrival of the sample, or when the guard stopped
     AxisSnapshot snapshot{};                    // the last one
     std::uint64_t samples = 1;                  // how long the episode lasted

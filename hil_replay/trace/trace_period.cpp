@@ -8,8 +8,51 @@
 #include <optional>
 
 #include "firmware_if/protocol/permit2_frames.hpp"
+#include "firmware_if/receiver/axis_receiver.hpp"
 
 namespace axg {
+
+namespace {
+
+bool is_sync(const CanFrame& frame, std::uint32_t sync_id) noexcept {
+    return frame.id == sync_id && !frame.extended && !frame.remote && !frame.error && !frame.fd;
+}
+
+/// Periods between two SYNCs: by their counters, or by the time where they have none.
+std::int64_t steps_between(const CanFrame& a, const CanFrame& b, const CanLayout& can) noexcept {
+    if (can.sync_counter_max == 0) {
+        const std::int64_t period_us = can.sample_us;
+        return (b.time_us - a.time_us + period_us / 2) / period_us;
+    }
+    return (b.data[0] + can.sync_counter_max - a.data[0]) % can.sync_counter_max;
+}
+
+}  // namespace
+
+TracePeriod judge_trace_period(TraceReader& trace, const Machine& machine) {
+    const CanLayout& can = machine.can;
+    TracePeriod out{.declared_us = can.sample_us};
+    PeriodWatch watch{.terms = sync_terms(machine)};
+    std::optional<CanFrame> last;
+    CanFrame frame;
+    while (out.verdict != PeriodVerdict::wrong && trace.next(frame)) {
+        const bool is_measured = is_sync(frame, can.sync_id) && can.format != CanFormat::signals;
+        const std::int64_t steps = is_measured && last ? steps_between(*last, frame, can) : 1;
+        if (!is_measured || steps == 0) {
+            continue;  // sent twice: the earlier stamp stays
+        }
+        if (steps > can.counter_delta_max) {
+            restart(watch);  // the board began anew
+        }
+        last = frame;
+        const PeriodVerdict judged = judge_stamp(watch, steps, frame.time_us);
+        if (judged != PeriodVerdict::unknown) {
+            out.verdict = judged;
+            out.measured_ns = watch.measured_ns;
+        }
+    }
+    return out;
+}
 
 std::uint32_t trace_period_us(TraceReader& trace, std::uint32_t sync_id) {
     constexpr std::size_t kGaps = 63;  // enough for a median that jitter and a loss do not move
@@ -18,7 +61,7 @@ std::uint32_t trace_period_us(TraceReader& trace, std::uint32_t sync_id) {
     std::optional<CanFrame> last;
     CanFrame frame;
     while (count < kGaps && trace.next(frame)) {
-        if (frame.id != sync_id || frame.extended || frame.remote || frame.error || frame.fd) {
+        if (!is_sync(frame, sync_id)) {
             continue;
         }
         const bool has_counter = frame.length_bytes != 0;
@@ -63,15 +106,26 @@ bool has_session_frames(TraceReader& trace, std::uint32_t session_id) {
     return false;
 }
 
-std::string take_trace_shape(const std::string& path, const TraceOptions& options,
-                             Machine& machine) {
+std::string take_trace_shape(const std::string& path, const TraceOptions& options, Machine& machine,
+                             TracePeriod* period) {
     std::string error;
     std::unique_ptr<TraceReader> trace = open_trace(path, options, error);
     if (!trace) {
         return error;
     }
     CanLayout& can = machine.can;
-    const std::uint32_t period_us = trace_period_us(*trace, can.sync_id);
+    const TracePeriod judged = judge_trace_period(*trace, machine);
+    if (judged.verdict == PeriodVerdict::wrong) {
+        fmt::print(stderr,
+                   "{}: a live guard refuses this period: sync_period, measured {:.3f} us, "
+                   "declared {} us. Correct can.sample_us, or the board's period.\n",
+                   path, static_cast<double>(judged.measured_ns) / 1000, can.sample_us);
+    }
+    if (period != nullptr) {
+        *period = judged;
+    }
+    trace = open_trace(path, options, error);
+    const std::uint32_t period_us = trace ? trace_period_us(*trace, can.sync_id) : 0;
     if (period_us != 0 && period_us != can.sample_us) {
         fmt::print(stderr, "{}: sample period {} us, in the machine file {}; using {}\n", path,
                    period_us, can.sample_us, period_us);

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/machine/machine.hpp"
+#include "firmware_if/receiver/period_watch.hpp"
 #include "hil_replay/trace/trace_reader.hpp"
 
 namespace axg {
@@ -19,6 +20,16 @@ namespace axg {
 /// @return 0 when the trace holds fewer than three SYNC frames (format signals has none)
 [[nodiscard]] std::uint32_t trace_period_us(TraceReader& trace, std::uint32_t sync_id);
 
+/// The machine file's period against the trace's, as a live guard measures it.
+struct TracePeriod {
+    std::uint32_t declared_us = 0;
+    PeriodVerdict verdict = PeriodVerdict::unknown;
+    std::int64_t measured_ns = 0;  // 0: unknown
+};
+/// Of the first SYNC frames of a trace, up to the first window that refutes the period. Reads it
+/// forward, as trace_period_us does.
+[[nodiscard]] TracePeriod judge_trace_period(TraceReader& trace, const Machine& machine);
+
 /// Whether the frames on `axis_id` are flexible ones: judged by the first of them among the first
 /// thousand frames of the trace. Reads it forward, as trace_period_us does.
 [[nodiscard]] bool has_flexible_axes(TraceReader& trace, std::uint32_t axis_id);
@@ -29,9 +40,10 @@ namespace axg {
 
 /// Period and kind of frame are taken from the trace: simulate --sample-us and --fd may have chosen
 /// others than the machine file. A trace without session frames is of a board with permit 1. What
-/// was taken is said on stderr.
+/// was taken is said on stderr, and whether a live guard would refuse the period.
+/// @param period  null: not wanted
 /// @return  empty, or why the trace cannot be read
 [[nodiscard]] std::string take_trace_shape(const std::string& path, const TraceOptions& options,
-                                           Machine& machine);
+                                           Machine& machine, TracePeriod* period = nullptr);
 
 }  // namespace axg

@@ -22,7 +22,8 @@ std::int64_t at_share(const std::vector<std::int64_t>& sorted, double share) {
 
 TraceSurvey::TraceSurvey(const Machine* machine)
     : machine_(machine),
-      receiver_(machine == nullptr ? Machine{} : *machine, {.takes_jumps = true}) {
+      receiver_(machine == nullptr ? Machine{} : *machine,
+                {.takes_jumps = true, .period = PeriodUse::ignored}) {
     if (machine != nullptr) {
         limits_.emplace(*machine);
     }

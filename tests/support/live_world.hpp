@@ -40,7 +40,8 @@ class LiveWorld {
     std::function<CycleResult(std::uint64_t)> verdict = [](std::uint64_t) {
         return CycleResult{.has_permit = true, .known_answer_signature = kKnownAnswerSignature};
     };
-    LiveOptions options{.supposes_arming = true};  // of the next start; the board moves
+    LiveOptions options{.supposes_arming = true,
+                        .supposes_period = true};  // of the next start; the board moves
     std::function<void()> each_step;               // what another thread would do; empty: nothing
     bool is_armed = false;                         // of the query of that verdict
     bool engine_runs = true;

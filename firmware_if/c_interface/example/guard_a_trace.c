@@ -99,8 +99,10 @@ static axg_status play(axg_guard* guard, FILE* trace, axg_state* state) {
             return status;
         }
         if (state->phase == AXG_PHASE_STOPPED) {
+            const bool is_input = strcmp(state->cause, "input") == 0;
             printf("stopped at %" PRId64 " us: %s: %s: %s\n", frame.time_us, state->cause,
-                   state->reason, axg_guard_pair_name(guard, state->pair));
+                   is_input ? state->input_fault : state->reason,
+                   axg_guard_pair_name(guard, state->pair));
             break;
         }
     }

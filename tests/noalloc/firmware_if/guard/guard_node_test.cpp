@@ -76,8 +76,9 @@ TEST(GuardNodeAllocates, NothingInHealthOrAfterFaults) {
     FixedWire wire;
     const auto records = std::make_unique<BlackBoxQueue>();
     BlackBox black_box(black_box_bytes(machine));
-    GuardNode guard(machine, {.black_box = records.get(), .supposes_arming = true}, wire, *queues,
-                    latch, 999'000);
+    GuardNode guard(machine,
+                    {.black_box = records.get(), .supposes_arming = true, .supposes_period = true},
+                    wire, *queues, latch, 999'000);
     const std::uint64_t before = allocations;
     std::uint64_t permits_healthy = 0;
     for (std::size_t k = 0; k < frames.size(); ++k) {
@@ -116,7 +117,8 @@ TEST(GuardNodeAllocates, NothingForAnOperatorWhetherItActsOrNot) {
     const auto queues = std::make_unique<LiveQueues>();
     LatchCell latch{kLatchClear, ~kLatchClear};
     FixedWire wire;
-    GuardNode guard(machine, {.supposes_arming = true}, wire, *queues, latch, 999'000);
+    GuardNode guard(machine, {.supposes_arming = true, .supposes_period = true}, wire, *queues,
+                    latch, 999'000);
     test::OperatorPanel panel;
     const std::uint64_t before = allocations;
     for (std::int64_t now_us = 1'000'000; now_us < 2'000'000; now_us += 500) {

@@ -59,7 +59,7 @@ TEST_F(CheckCommand, NamesTheWayOfEachAxis) {
 
 // What the file leaves out costs a stop something where its default is not true.
 TEST_F(CheckCommand, ListsPromisesWithoutAStatedValue) {
-    ASSERT_EQ(run("check", paper_, "--json '" + shop_.file("m.json") + "'"), 0) << shop_.err;
+    ASSERT_EQ(run("check", paper_, "--json='" + shop_.file("m.json") + "'"), 0) << shop_.err;
     EXPECT_TRUE(says("\npromises not stated: 6 (a stop from rapid, with 3 samples of permit)\n"))
         << shop_.out;
     EXPECT_TRUE(

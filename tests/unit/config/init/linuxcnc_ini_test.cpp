@@ -188,6 +188,22 @@ TEST(LinuxcncIni, IncludedFilesAreReadWhereTheyStand) {
     EXPECT_NE(endless.faults[0].find("too many files"), std::string::npos) << endless.faults[0];
 }
 
+// The thread in which samples are latched; to the nanosecond, as LinuxCNC takes it.
+TEST(LinuxcncIni, TheServoPeriodIsThatOfTheBoard) {
+    const std::string head = "[TRAJ]\nCOORDINATES = XZ\nLINEAR_UNITS = mm\n[EMCMOT]\n";
+    EXPECT_EQ(read_ini(head, "m.ini").servo_period_ns, std::nullopt);
+    EXPECT_EQ(read_ini(head + "SERVO_PERIOD = 976562 # 1024 Hz\n", "m.ini").servo_period_ns,
+              976'562);
+    for (const char* wrong : {"1 ms", "0", "49999", "100000001", "1000000.5"}) {
+        const IniAxes ini = read_ini(head + "SERVO_PERIOD = " + wrong + "\n", "m.ini");
+        ASSERT_EQ(ini.faults.size(), 1U) << wrong;
+        EXPECT_EQ(ini.faults[0], std::string("m.ini:5: [EMCMOT] SERVO_PERIOD: invalid value (found "
+                                             "\"") +
+                                     wrong +
+                                     "\", expected 50000 to 100000000, whole nanoseconds).");
+    }
+}
+
 TEST(LinuxcncIni, WhatIsWrongSaysWhere) {
     const auto faults = [](const std::string& text) {
         std::string out;

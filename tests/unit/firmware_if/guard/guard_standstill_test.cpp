@@ -276,6 +276,7 @@ TEST_P(GuardStandstill, AMotionIsArmedWhereThatIsOnlySupposed) {
     world.guard->arm(world.wire.now_us);
     EXPECT_EQ(guard().phase, GuardPhase::armed);
     EXPECT_FALSE(LiveOptions{}.supposes_arming);
+    EXPECT_FALSE(LiveOptions{}.supposes_period);
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, GuardStandstill,

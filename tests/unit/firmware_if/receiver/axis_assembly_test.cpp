@@ -85,6 +85,27 @@ TEST(AxisAssembly, ARepeatedSyncDoesNotMakeItsSampleYounger) {
     EXPECT_EQ(fixture.heard.snapshots[20].latched_us, snapshot_at(fixture.machine, 20).latched_us);
 }
 
+// A queue that fills: each SYNC is 0.15 periods later than the one before, and so is its sample.
+// What is held up must not look younger: the base follows by 1 % of a period, and the age grows.
+TEST(AxisAssembly, AQueueThatFillsMakesItsSamplesOlder) {
+    Fixture fixture(CanFormat::classical, 13);
+    for (std::size_t k = 0; k < fixture.samples.size(); ++k) {
+        for (CanFrame& frame : fixture.samples[k]) {
+            frame.time_us += 150 * static_cast<std::int64_t>(k);
+        }
+    }
+    fixture.hear();
+    fixture.expect_running_without(0);
+    const auto age_us = [&fixture](std::size_t k) {
+        const AxisSnapshot& snapshot = fixture.heard.snapshots[k];
+        return snapshot.arrived_us - snapshot.latched_us;
+    };
+    for (std::size_t k = 3; k < fixture.samples.size(); ++k) {
+        EXPECT_GE(age_us(k), age_us(k - 1) + 130) << k;  // 150, less what the base may follow by
+    }
+    EXPECT_GT(age_us(12), age_us(0) + 1300);
+}
+
 TEST(AxisAssembly, TheSendersClockMayBeOffByAFifthOfThePeriodAndNoMore) {
     for (const int off_us : {-201, -200, 200, 201}) {
         Fixture fixture(CanFormat::fd);

@@ -489,7 +489,7 @@ TEST(AxisReceiver, SyncIsCheckedForShapeStepAndPeriod) {
     EXPECT_EQ(fixture.count(ReceiverFault::bad_length), 1U);
     EXPECT_EQ(fixture.count(ReceiverFault::bad_format), 2U);
     EXPECT_EQ(fixture.count(ReceiverFault::wrong_sequence), 1U);
-    EXPECT_EQ(fixture.count(ReceiverFault::sync_period), 1U);
+    EXPECT_EQ(fixture.count(ReceiverFault::sync_early_or_late), 1U);
     EXPECT_EQ(fixture.receiver.counters().estimated, 4U);
     EXPECT_EQ(fixture.receiver.state(), ReceiverState::valid);
     EXPECT_EQ(fixture.heard.snapshots.size(), 40U);

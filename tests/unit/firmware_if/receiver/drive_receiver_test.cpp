@@ -194,7 +194,7 @@ TEST(DriveReceiver, ASecondSyncProducerIsNoSample) {
                      [](const CanFrame& a, const CanFrame& b) { return a.time_us < b.time_us; });
     fixture.hear();
     EXPECT_EQ(fixture.receiver.state(), ReceiverState::valid);
-    EXPECT_EQ(fixture.count(ReceiverFault::sync_period), 1U);
+    EXPECT_EQ(fixture.count(ReceiverFault::sync_early_or_late), 1U);
     EXPECT_GE(fixture.count(ReceiverFault::sync_missing), 1U);
     EXPECT_EQ(fixture.heard.snapshots.size(), 38U) << "what it may have touched, and the next";
 }
@@ -209,7 +209,7 @@ TEST(DriveReceiver, ASyncHeldUpInAQueueDoesNotMakeItsSampleYounger) {
     const std::int64_t late_us =
         fixture.heard.snapshots[20].latched_us - snapshot_at(fixture.machine, 20).latched_us;
     EXPECT_EQ(late_us, 200) << "a fifth of the period, and no more";
-    EXPECT_EQ(fixture.count(ReceiverFault::sync_period), 2U);
+    EXPECT_EQ(fixture.count(ReceiverFault::sync_early_or_late), 2U);
 }
 
 TEST(DriveReceiver, SilenceIsFoundByTheClock) {

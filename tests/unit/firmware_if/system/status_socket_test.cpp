@@ -27,7 +27,8 @@ namespace fs = std::filesystem;
 
 std::string line_of(const std::string& phase, const std::string& cause) {
     return "{\"axguardd\":\"9\",\"bus\":\"can0\",\"machine\":\"m\",\"configuration_sha256\":\"a\","
-           "\"mode\":\"contact\",\"age_ms\":3,\"phase\":\"" +
+           "\"mode\":\"contact\",\"board_test\":{\"record\":\"none\",\"serial\":null,"
+           "\"date\":null,\"differs\":[]},\"age_ms\":3,\"phase\":\"" +
            phase + "\",\"phase_ms\":40,\"cause\":\"" + cause +
            "\",\"reason\":\"none\",\"pair\":null,\"why\":null,\"withheld\":\"nothing\","
            "\"withheld_reason\":\"none\",\"withheld_pair\":null,\"withheld_why\":null,\"stands\":"

@@ -116,7 +116,8 @@ TEST_F(Commands, InitTakesTheAxesOfAnIniFile) {
         << "[TRAJ]\nCOORDINATES = XYZACW\nLINEAR_UNITS = inch\n"
            "[AXIS_X]\nMIN_LIMIT = -12.5\nMAX_LIMIT = 12\nMAX_VELOCITY = 10\n"
            "MAX_ACCELERATION = 20\n[AXIS_A]\nMIN_LIMIT = -100\nMAX_LIMIT = 95\n"
-           "MAX_VELOCITY = 360\n[AXIS_C]\nWRAPPED_ROTARY = 1\n";
+           "MAX_VELOCITY = 360\n[AXIS_C]\nWRAPPED_ROTARY = 1\n"
+           "[EMCMOT]\nSERVO_PERIOD = 976562\n";
     const Outcome init =
         axguard({"init", path("meshes/mill.ini"), "-o", path("m.yaml"), "--unit", "mm"});
     EXPECT_EQ(init.exit_code, kExitClean) << init.err;
@@ -141,6 +142,11 @@ TEST_F(Commands, InitTakesTheAxesOfAnIniFile) {
     EXPECT_TRUE(has(
         text, "# GUESS: stopping, position_error, following_error, travel, speed, acceleration\n"))
         << "Y\n"
+        << text;
+    EXPECT_EQ(machine.can.sample_us, 977U);
+    EXPECT_TRUE(has(text,
+                    "  sample_us: 977  # SERVO_PERIOD is 976562 ns; 0.045 % of the 1 % that "
+                    "the period may be off\n"))
         << text;
     EXPECT_EQ(machine.axes[0].jerk_max, kNoJerkLimit) << "LinuxCNC limits no jerk";
     EXPECT_TRUE(has(text, "# W of the INI file: give it to the body that it moves\n")) << text;

@@ -57,6 +57,37 @@ TEST(TracePeriod, IsNotThatOfDoubledSyncs) {
     EXPECT_EQ(trace_period_us(*reader, 0x080), machine.can.sample_us);
 }
 
+// A replay takes the trace's period; a live guard with the same machine file would refuse it.
+TEST(TracePeriod, IsJudgedAsALiveGuardWould) {
+    struct Case {
+        std::int64_t board_us;
+        PeriodVerdict verdict;
+    };
+    for (const Case& one : {Case{1000, PeriodVerdict::right}, Case{995, PeriodVerdict::right},
+                            Case{950, PeriodVerdict::wrong}, Case{1020, PeriodVerdict::wrong}}) {
+        const Machine machine = test::five_axis_machine(CanFormat::classical);
+        std::string text;
+        std::int64_t k = 0;
+        for (const auto& sample : test::board_frames(machine, 1000)) {
+            for (CanFrame frame : sample) {
+                frame.time_us += (one.board_us - 1000) * k;
+                append_candump(text, frame, "can0");
+                if (frame.id == 0x080) {
+                    append_candump(text, frame, "can0");  // sent twice: one period
+                }
+            }
+            ++k;
+        }
+        const auto reader = read_candump("t.log", text, {});
+        const TracePeriod period = judge_trace_period(*reader, machine);
+        EXPECT_EQ(reader->error(), "");
+        EXPECT_EQ(period.verdict, one.verdict) << one.board_us;
+        EXPECT_EQ(period.declared_us, 1000U);
+        EXPECT_NEAR(static_cast<double>(period.measured_ns),
+                    1000.0 * static_cast<double>(one.board_us), 100);
+    }
+}
+
 TEST(TracePeriod, IsUnknownWithFewerThanThreeSyncs) {
     EXPECT_EQ(period_of(""), 0U);
     EXPECT_EQ(period_of("(1.000000) can0 080#01\n(1.001000) can0 080#02\n"), 0U);

@@ -198,6 +198,7 @@ TEST_F(WatchState, ALineOfAnotherVersionOrOfGarbageIsNone) {
     EXPECT_FALSE(read_guard_line("{\"axguardd\":\"9\",\"phase\":\"armed\"}"));
     const auto init = read_guard_line(
         R"({"axguardd":"0","bus":"can0","machine":"m","configuration_sha256":"","mode":"x",)"
+        R"("board_test":{"record":"none","serial":null,"date":null,"differs":[]},)"
         R"("phase":"init"})");
     ASSERT_TRUE(init);
     input.status = init;
