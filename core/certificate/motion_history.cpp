@@ -14,6 +14,7 @@ namespace {
 constexpr double kShareUp = 0x1p-40;     // more than the roundings of any formula below
 constexpr double kPositionUp = 0x1p-30;  // and than those of positions up to 1e5
 constexpr double kStrideS = 1e-3;        // closer samples say little about acceleration
+constexpr double kLooseShare = 0.05;     // of a jitter that hides more than a count does
 
 /// What the axis is promised to keep to.
 struct Promised {
@@ -93,14 +94,35 @@ Span speed_of(const MotionHistory& h, std::uint32_t axis, Span acceleration,
     return out;
 }
 
+/// Largest speed in the time of these samples, and a jitter before and after. Over two strides the
+/// axis had its mean speed at some instant, and any other is not farther from it than they last.
+double fastest_seen(const MotionHistory& h, std::uint32_t back, std::uint32_t axis,
+                    const Promised& promised, const SampleErrors& errors) noexcept {
+    double fastest = 0;
+    for (std::uint32_t newer = 0; newer < back; newer += 2) {
+        const std::uint32_t older = std::min(newer + 2, back);
+        const double nominal =
+            static_cast<double>(h.sample[newer] - h.sample[older]) * errors.period_s;
+        const double shortest = nominal * (1 - errors.period_share) - errors.latch_jitter_s;
+        const double longest = nominal * (1 + errors.period_share) + errors.latch_jitter_s;
+        double moved = h.position[newer][axis] - h.position[older][axis];
+        moved -= promised.unlimited ? 2 * kPi * std::round(moved / (2 * kPi)) : 0;
+        if (!(shortest > 0.25 * nominal)) {
+            return promised.speed_max;
+        }
+        fastest = std::max(fastest, (std::fabs(moved) + 2 * errors.position) / shortest +
+                                        promised.acceleration_max * longest);
+    }
+    return fastest + promised.acceleration_max * errors.latch_jitter_s;
+}
+
 /// From three samples: the second divided difference is a mean of the acceleration.
 Span acceleration_from(const Since& one, const Since& two, double fastest, const Promised& promised,
                        const SampleErrors& errors) noexcept {
     const double d1 = one.nominal_s, d2 = two.nominal_s, between = d2 - d1;
     const double mean = 2 * (one.moved / d1 - (two.moved - one.moved) / between) / d2;
     // A sample latched off its instant is a position that is off.
-    const double speed =
-        std::min(promised.speed_max, fastest + promised.acceleration_max * two.time_s.high);
+    const double speed = std::min(promised.speed_max, fastest);
     const double older = errors.position + speed * errors.latch_jitter_s;
     const double off =
         2 / d2 * (errors.position / d1 + older * (1 / d1 + 1 / between) + older / between);
@@ -120,7 +142,11 @@ Span acceleration_of(const MotionHistory& h, std::uint32_t axis, double fastest,
         Since one, two;
         if (since(h, i, axis, promised, errors, one) &&
             since(h, 2 * i, axis, promised, errors, two)) {
-            out.meet(widened(acceleration_from(one, two, fastest, promised, errors)));
+            double most = fastest + promised.acceleration_max * two.time_s.high;
+            if (errors.latch_jitter_s > kLooseShare * one.nominal_s) {
+                most = std::min(most, fastest_seen(h, 2 * i, axis, promised, errors));
+            }
+            out.meet(widened(acceleration_from(one, two, most, promised, errors)));
         }
     }
     return out;

@@ -130,7 +130,8 @@ void judge_track(Random& random, const Axis& axis, const Track& track, SampleErr
     }
 }
 
-void judge_axes(std::uint64_t seed, bool is_limited, bool is_unlimited_axis) {
+void judge_axes(std::uint64_t seed, bool is_limited, bool is_unlimited_axis,
+                double jitter_s_most = 1e-4) {
     Random random(printed_seed(seed));
     Worst worst;
     for (unsigned i = 0; i < history_count() && !testing::Test::HasFailure(); ++i) {
@@ -138,7 +139,7 @@ void judge_axes(std::uint64_t seed, bool is_limited, bool is_unlimited_axis) {
         SampleErrors errors;
         errors.period_s = (random() & 1U) != 0 ? 1e-3 : 2e-3;
         errors.period_share = 0.01;
-        errors.latch_jitter_s = between(random, 0, 1e-4);
+        errors.latch_jitter_s = between(random, 0, jitter_s_most);
         errors.position = (is_unlimited_axis ? 2e-5 : 1e-3) * between(random, 0, 2);
         errors.is_jerk_limited = is_limited;
         const Track track = drive(random, axis, !is_limited, 0.05);
@@ -148,7 +149,7 @@ void judge_axes(std::uint64_t seed, bool is_limited, bool is_unlimited_axis) {
         "%u axes, %u with an acceleration better than its limit; at most %.2f of the range "
         "of speeds and %.2f of that of accelerations was used\n",
         worst.judged, worst.tighter, worst.speed, worst.acceleration);
-    if (history_count() >= 4000) {
+    if (history_count() >= 4000 && jitter_s_most <= 1e-4) {
         EXPECT_GT(worst.speed, 0.5) << "a bound this wide would hide a missing term";
         EXPECT_TRUE(!is_limited || worst.tighter > worst.judged / 4);
     }
@@ -159,6 +160,10 @@ TEST(MotionHistory, SpeedIsWithinItsRangeWhereAccelerationJumps) {
 }
 TEST(MotionHistory, SpeedAndAccelerationAreWithinTheirRangesWhereJerkIsLimited) {
     judge_axes(20261161, true, false);
+}
+// As positions of different ages: two periods of jitter.
+TEST(MotionHistory, AJitterOfPeriodsIsWithinTheRangesToo) {
+    judge_axes(20261163, true, false, 2e-3);
 }
 TEST(MotionHistory, AnEndlessAxisIsFollowedAcrossTheTurn) {
     judge_axes(20261162, true, true);
