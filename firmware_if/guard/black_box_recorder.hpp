@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstddef>
+#include <variant>
 
 #include "firmware_if/guard/black_box_record.hpp"
 
@@ -21,7 +22,8 @@ class BlackBoxRecorder final : public CanTransport {
 
     /// Stamps what comes from now on.
     void set_time(std::int64_t now_us) noexcept { now_us_ = now_us; }
-    /// Every turn leaves a record, so that all of them can be made again at their times.
+    /// Every turn leaves a record, so that all of them can be made again at their times: a note is
+    /// none, for notes are made between turns too.
     void begin_turn(std::int64_t now_us) noexcept {
         now_us_ = now_us;
         has_record_ = false;
@@ -35,7 +37,7 @@ class BlackBoxRecorder final : public CanTransport {
     [[nodiscard]] std::uint64_t lost() const noexcept { return lost_; }
 
     void add(const BlackBoxContent& content) noexcept {
-        has_record_ = true;
+        has_record_ = has_record_ || !std::holds_alternative<LiveNote>(content);
         if (queue_ == nullptr) {
             return;
         }
