@@ -92,10 +92,9 @@ struct LiveOptions {
     // Of a recorded or a simulated motion it is only supposed that a person armed, and when: the
     // axes may move. Never set where a guard is deployed (style.deployed_symbols).
     bool supposes_arming = false;
-    // The board's period is only supposed to be can.sample_us until a window refutes it: of a
-    // trace, whose own period was taken, and of a simulated board. Never set where a guard is
-    // deployed.
-    bool supposes_period = false;
+    // The board's period is not judged: of a trace its own was taken, and a simulated board has the
+    // declared one. Never set where a guard is deployed.
+    bool ignores_period = false;
     // can.sync: guard, and SYNC of the guard of then is in the recording: none is sent, and what
     // comes as an own frame is it. Never set where a guard is deployed.
     bool supposes_sync = false;
@@ -104,7 +103,7 @@ struct LiveOptions {
 /// How the guard's own receiver reads.
 [[nodiscard]] constexpr ReceiverOptions receiver_options(const LiveOptions& options) noexcept {
     return {.refuse_local = !options.accepts_local,
-            .period = options.supposes_period ? PeriodUse::supposed : PeriodUse::proven};
+            .period = options.ignores_period ? PeriodUse::ignored : PeriodUse::proven};
 }
 
 class GuardNode {

@@ -11,7 +11,7 @@ TimedGuard::TimedGuard(const LiveEngine& live, const TimedGuardOptions& options,
                        std::int64_t now_us)
     : live_(live), options_(options), now_us_(now_us) {
     options_.guard.supposes_arming = true;
-    options_.guard.supposes_period = true;
+    options_.guard.ignores_period = true;
     set_latch(latch_, false);
     start();
 }

@@ -18,7 +18,7 @@ WORD = re.compile(r"ablat(e|ion)|sabotag|wrong on purpose|forget[s_]*(jerk|path|
                   r"has_dead_man", re.I)
 DEPLOYED = re.compile(r"(core|config|cuda|firmware_if|hil_replay)/(?!lab/)")
 SUPPOSES = re.compile(
-    r"\bsupposes_(?:arming|period)\b\s*(=(?!=)(?!\s*false\b)|\{(?!\s*(false)?\s*\}))")
+    r"\b(?:supposes_arming|ignores_period)\b\s*(=(?!=)(?!\s*false\b)|\{(?!\s*(false)?\s*\}))")
 SUPPOSING = "hil_replay/guard/timed_guard.cpp"
 SOURCE = re.compile(r"\.(cpp|hpp|h|inl|cu|cuh)$")
 

@@ -41,9 +41,9 @@ class LiveWorld {
         return CycleResult{.has_permit = true, .known_answer_signature = kKnownAnswerSignature};
     };
     LiveOptions options{.supposes_arming = true,
-                        .supposes_period = true};  // of the next start; the board moves
-    std::function<void()> each_step;               // what another thread would do; empty: nothing
-    bool is_armed = false;                         // of the query of that verdict
+                        .ignores_period = true};  // of the next start; the board moves
+    std::function<void()> each_step;              // what another thread would do; empty: nothing
+    bool is_armed = false;                        // of the query of that verdict
     bool engine_runs = true;
     std::int64_t response_us = 200;
     bool stands_still = false;

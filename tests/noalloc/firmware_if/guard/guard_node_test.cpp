@@ -77,7 +77,7 @@ TEST(GuardNodeAllocates, NothingInHealthOrAfterFaults) {
     const auto records = std::make_unique<BlackBoxQueue>();
     BlackBox black_box(black_box_bytes(machine));
     GuardNode guard(machine,
-                    {.black_box = records.get(), .supposes_arming = true, .supposes_period = true},
+                    {.black_box = records.get(), .supposes_arming = true, .ignores_period = true},
                     wire, *queues, latch, 999'000);
     const std::uint64_t before = allocations;
     std::uint64_t permits_healthy = 0;
@@ -117,7 +117,7 @@ TEST(GuardNodeAllocates, NothingForAnOperatorWhetherItActsOrNot) {
     const auto queues = std::make_unique<LiveQueues>();
     LatchCell latch{kLatchClear, ~kLatchClear};
     FixedWire wire;
-    GuardNode guard(machine, {.supposes_arming = true, .supposes_period = true}, wire, *queues,
+    GuardNode guard(machine, {.supposes_arming = true, .ignores_period = true}, wire, *queues,
                     latch, 999'000);
     test::OperatorPanel panel;
     const std::uint64_t before = allocations;

@@ -25,7 +25,7 @@ class TickedGuard {
     TickedGuard(const LiveEngine& live, std::int64_t now_us)
         : live_(live),
           now_us_(now_us),
-          guard_(live.machine, {.supposes_arming = true, .supposes_period = true}, wire_, queues_,
+          guard_(live.machine, {.supposes_arming = true, .ignores_period = true}, wire_, queues_,
                  latch_, now_us) {
         tick();
     }

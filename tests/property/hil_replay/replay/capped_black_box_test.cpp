@@ -172,7 +172,7 @@ class CappedRun {
     static LiveOptions options() {
         LiveOptions out;
         out.supposes_arming = true;
-        out.supposes_period = true;
+        out.ignores_period = true;
         return out;
     }
     [[nodiscard]] std::vector<std::uint8_t> dump(double share, Forgotten forgotten) const {

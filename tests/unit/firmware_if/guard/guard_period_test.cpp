@@ -24,7 +24,7 @@ class GuardPeriod : public testing::TestWithParam<CanFormat> {
     /// The deployed guard, and a board whose period may be another one.
     void start(std::uint32_t board_us) {
         latch = {kLatchClear, ~kLatchClear};
-        world.options.supposes_period = false;
+        world.options.ignores_period = false;
         world.start();
         world.machine.can.sample_us = board_us;
     }
