@@ -164,7 +164,7 @@ void AxisReceiver::forget() noexcept {
     arrival_steps_ = 0;
     restart(sync_period_);
     restart(sender_period_);
-    is_period_shown_ = false;
+    shows_sync_period_ = shows_sender_period_ = false;
     has_last_ = has_sender_ = false;
     good_in_row_ = estimates_ = 0;
 }
@@ -203,7 +203,8 @@ bool AxisReceiver::is_period_wrong(PeriodWatch& watch, std::int64_t steps,
     if (verdict != PeriodVerdict::unknown) {
         counters_.measured_period_ns = watch.measured_ns;
     }
-    is_period_shown_ = is_period_shown_ || verdict == PeriodVerdict::right;
+    bool& is_shown = &watch == &sender_period_ ? shows_sender_period_ : shows_sync_period_;
+    is_shown = is_shown || verdict == PeriodVerdict::right;
     return verdict == PeriodVerdict::wrong;
 }
 

@@ -120,10 +120,12 @@ class AxisReceiver {
     /// Whether a window has shown that the period is right since the last acknowledge; so it is
     /// where nothing measures it, and where it is supposed.
     [[nodiscard]] bool is_period_shown() const noexcept {
-        return is_period_shown_ || options_.period != PeriodUse::proven || !measures_period_;
+        const bool are_shown =
+            shows_sync_period_ && (shows_sender_period_ || set_.format != CanFormat::fd);
+        return are_shown || options_.period != PeriodUse::proven || !measures_period_;
     }
     /// It was shown before the first frame: of a recording that begins in the middle.
-    void suppose_period() noexcept { is_period_shown_ = true; }
+    void suppose_period() noexcept { shows_sync_period_ = shows_sender_period_ = true; }
 
     /// Of the newest sample with this SYNC counter, one of the last 240; nothing: the board's
     /// session is not known, or older than kSessionTimeoutUs.
@@ -237,7 +239,9 @@ class AxisReceiver {
 
     PeriodWatch sync_period_;    // by SYNC; format signals: by arrival
     PeriodWatch sender_period_;  // format fd: by the sender's clock
-    bool measures_period_ = true, is_period_shown_ = false;
+    bool measures_period_ = true;
+    // By SYNC and by the sender's clock, which may be wrong by as much as the period.
+    bool shows_sync_period_ = false, shows_sender_period_ = false;
 
     DriveGroup drives_;
     ArrivalAnchor arrivals_;           // format signals
