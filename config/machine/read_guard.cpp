@@ -113,6 +113,20 @@ void check_sync_jitter(MapReader& reader, const Machine& machine) {
     }
 }
 
+void read_free_jerk(MapReader& reader, Machine& machine) {
+    constexpr std::array<std::string_view, 2> kJerk{"any", "limited"};
+    std::size_t jerk = 0;
+    if (reader.choice("free_jerk", Need::optional, kJerk, jerk)) {
+        machine.guard.free_jerk_limited = jerk == 1;
+    }
+    for (const Axis& axis : machine.axes) {
+        if (machine.guard.free_jerk_limited && !has_jerk_limit(axis)) {
+            reader.report("free_jerk", "limited, and axis " + axis.name + " without a jerk limit",
+                          "any, or a number for jerk_... of that axis");
+        }
+    }
+}
+
 /// Of the plan's keys, for one release.
 void read_older_names(MapReader& reader, CycleRules& out) {
     std::uint32_t rounds = 0;
@@ -157,17 +171,7 @@ void read_guard(MapReader& top, MachineDraft& draft) {
         out.latch_jitter_s = value / 1e6;
     }
     check_sync_jitter(reader, draft.machine);
-    constexpr std::array<std::string_view, 2> kJerk{"any", "limited"};
-    std::size_t jerk = 0;
-    if (reader.choice("free_jerk", Need::optional, kJerk, jerk)) {
-        out.free_jerk_limited = jerk == 1;
-    }
-    for (const Axis& axis : draft.machine.axes) {
-        if (out.free_jerk_limited && !has_jerk_limit(axis)) {
-            reader.report("free_jerk", "limited, and axis " + axis.name + " without a jerk limit",
-                          "any, or a number for jerk_... of that axis");
-        }
-    }
+    read_free_jerk(reader, draft.machine);
     constexpr std::array<std::string_view, 2> kReversals{"none", "jerk_limited"};
     std::size_t reversal = 0;
     states.stop_reversal = reader.choice("stop_reversal", Need::optional, kReversals, reversal);
