@@ -75,7 +75,9 @@ def line_of(configuration):
                 "send_faults", "samples_lost", "frames_dropped", "operator_acts",
                 "operator_refused", "operator_ignored")
     return {"axguardd": "0.1.0", "bus": "can0", "machine": "paper-trunnion",
-            "configuration_sha256": configuration, "mode": "stoppable", "age_ms": 1,
+            "configuration_sha256": configuration, "mode": "stoppable",
+            "board_test": {"record": "none", "serial": None, "date": None, "differs": []},
+            "sample_us": 4000, "period_us": None, "age_ms": 1,
             "phase": "ready", "phase_ms": 1200, "cause": "none", "reason": "none", "pair": None,
             "why": None, "withheld": "nothing", "withheld_reason": "none", "withheld_pair": None,
             "withheld_why": None, "stands": True,
