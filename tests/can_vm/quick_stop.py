@@ -88,9 +88,9 @@ def drive_keys():
 
 
 def simulated(keys):
-    """A second at rest, X at 10 mm/s for two, and rest."""
+    """Four seconds at rest, X at 10 mm/s for two, and rest."""
     program, trace = pathlib.Path("/run/one-axis.ngc"), pathlib.Path("/run/one-axis.log")
-    program.write_text("T1 M6\nG4 P1\nG1 X20 F600\nG4 P20\nM2\n")
+    program.write_text("T1 M6\nG4 P4\nG1 X20 F600\nG4 P20\nM2\n")
     subprocess.run([BUILD / "axguard", "simulate", machine_file("cia402", can_keys=keys), program,
                     "--mesh-root", SOURCE / "config/machines", "-o", trace], check=True,
                    stdout=subprocess.DEVNULL)
@@ -106,11 +106,11 @@ def one_of_five_moves():
     board = Board(trace)
     started = time.monotonic()
     guard.arm()
-    time.sleep(max(0.0, started + 1.6 - time.monotonic()))
+    time.sleep(max(0.0, started + 4.6 - time.monotonic()))
     guard.check_busy()
     Bus().send(DRIVES[1], struct.pack("<H", 0x000F))  # a reason to stop that passes
     guard.wait_for("stopped: second_guard")
-    stops = reset_only_at_rest(guard, bus, lambda: time.monotonic() < started + 2.8, started + 4.5)
+    stops = reset_only_at_rest(guard, bus, lambda: time.monotonic() < started + 5.8, started + 7.5)
     board.end()
     guard.end()
     print(f"{stops} stop frames while X moved", flush=True)

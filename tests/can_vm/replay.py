@@ -16,8 +16,9 @@ LAST_AXIS_FRAME = {"classical": "381#", "fd": "181##"}
 TRACE = os.environ.get("AXG_VM_TRACE", "collide-{}.log")  # in build/can_vm
 
 
-# The trace holds 200 samples at rest, 560 in motion before the contact, and 500 of these before a
-# stop from there with a permit of 50 ms would end in it. The guard is armed at rest.
+# The trace holds 800 samples at rest, 560 in motion before the contact, and 500 of these before a
+# stop from there with a permit of 50 ms would end in it. The guard is armed at rest, and for that
+# needs 256 samples or more that show the board's period: canplayer sends each late by up to 1 ms.
 REASONS = {"contact": ("contact", 450), "stoppable": ("predicted", 350)}
 
 

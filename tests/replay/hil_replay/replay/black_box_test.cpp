@@ -26,7 +26,7 @@
 namespace axg {
 namespace {
 
-const std::string kProgram = test::source_file("tests/can_vm/rest_collide.ngc");
+const std::string kProgram = "T1 M6\nG4 P1\nG0 X20 Y50\nG0 X0 Y107.132 A-19.2 C97\nG0 Z-230\nM2\n";
 
 /// The live guard, the engine's thread and the logger over one wire, by a counter for time.
 class RecordedWorld {
@@ -138,9 +138,9 @@ class BlackBoxReplayTest : public testing::Test {
         if (!std::filesystem::exists(AXG_PROGRAM)) {
             return;
         }
-        ASSERT_EQ(shop->run("simulate " + test::kPaperMachine + " " + kProgram + " -o trace.log"),
-                  kExitClean)
-            << shop->err;
+        const std::string program = shop->write("a.ngc", kProgram);
+        ASSERT_EQ(shop->run("simulate " + test::kPaperMachine + " a.ngc -o trace.log"), kExitClean)
+            << program << shop->err;
         trace = test::read_trace(shop->file("trace.log"));
     }
     static void TearDownTestSuite() {
@@ -251,7 +251,7 @@ TEST_F(BlackBoxReplayTest, AStopIsFoundAgainAtTheSameSampleForTheSameReasonAndPa
     EXPECT_GT(all["recorded"]["latched_us"].get<long>(), 0);
     EXPECT_EQ(all["why"]["pair"], "cutter-c");
     EXPECT_GT(all["why"]["needed_mm"].get<double>(), all["why"]["available_mm"].get<double>());
-    EXPECT_EQ(replay(kExitCollision, "--program " + kProgram)["program_block"], "G0 Z-230");
+    EXPECT_EQ(replay(kExitCollision, "--program a.ngc")["program_block"], "G0 Z-230");
     // It goes back to the start, so everything is compared.
     EXPECT_GT(all["verdicts"]["same"].get<long>(), 100);
     EXPECT_EQ(all["verdicts"]["different"], 0);
