@@ -10,7 +10,7 @@ install(FILES firmware_if/axguard.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
 install(TARGETS axguard RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT axguard)
 install(TARGETS axguard-lab RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT axguard-lab)
 install(DIRECTORY config/machines DESTINATION ${AXG_INSTALL_DATA}/config COMPONENT axguard
-        PATTERN generator EXCLUDE PATTERN README.md EXCLUDE)
+        PATTERN README.md EXCLUDE)
 install(DIRECTORY hil_replay/programs hil_replay/page DESTINATION ${AXG_INSTALL_DATA}/hil_replay
         COMPONENT axguard FILES_MATCHING PATTERN "*.ngc" PATTERN "*.html" PATTERN "*.css"
         PATTERN "*.js")

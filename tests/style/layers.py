@@ -22,10 +22,10 @@ MAY_INCLUDE = {
     "tests": FOLDERS,
 }
 ROOM_FILES_MAX = 40
-# Folders of a house that are no room: a program of its own, data, and the C interface, which has
-# no header that a room could include.
-NO_ROOMS = {"config/machines", "config/machines/generator", "config/machines/meshes",
-            "config/schema", "firmware_if/c_interface", "firmware_if/c_interface/example",
+# Folders of a house that are no room: data, and the C interface, which has no header that a room
+# could include.
+NO_ROOMS = {"config/machines", "config/machines/meshes", "config/schema",
+            "firmware_if/c_interface", "firmware_if/c_interface/example",
             "firmware_if/linuxcnc", "firmware_if/linuxcnc/examples/paper-trunnion",
             "firmware_if/linuxcnc/examples/xyzac-trt",
             "firmware_if/linuxcnc/examples/xyzbc-trt",
