@@ -11,10 +11,9 @@
 #include "core/collision/known_answer.hpp"
 
 namespace axg {
-
 namespace {
 
-constexpr std::uint32_t kAhead = 12;  // items that are written before a place of theirs is
+constexpr std::uint32_t kAhead = 12;  // items between a prefetch and its write
 
 void add(WorkLists& sum, const WorkLists& more) noexcept {
     sum.node_pairs += more.node_pairs;
@@ -24,7 +23,7 @@ void add(WorkLists& sum, const WorkLists& more) noexcept {
     sum.rechecks += more.rechecks;
 }
 
-/// What is proven of a larger box is proven of the task.
+/// Copies the proof of a larger box to its task.
 void take_proofs(std::span<JointBoxResult> results, std::uint32_t own) noexcept {
     for (std::uint32_t i = 0; i < own; ++i) {
         JointBoxResult& wider = results[i + own];
@@ -53,14 +52,14 @@ std::optional<StagedProver> StagedProver::create(const Machine& machine, std::ui
     for (std::uint32_t stage = 1; stage < plan.stages; ++stage) {
         queries = std::max(queries, plan.queries[stage]);
     }
-    const std::size_t nodes = std::size_t{2} * queries;  // trees whose leaves alone are queried
+    const std::size_t nodes = std::size_t{2} * queries;  // trees with queries only of the leaves
     Arena arena(BoxQueries::size_bytes(tasks) + Arena::size_bytes<BoxQueries>(1) +
                 Arena::size_bytes<BoxItem>(nodes) + Arena::size_bytes<Node>(nodes) +
                 Arena::size_bytes<std::uint32_t>(queries) + Arena::size_bytes<Query>(queries + 2) +
                 Arena::size_bytes<QueryResult>(queries + 2) +
                 Arena::size_bytes<GroupWork>(tasks + 1) + Arena::size_bytes<QueryStatus>(tasks) +
-                Arena::size_bytes<std::uint32_t>(tasks) +
-                Arena::size_bytes<QueryTree>(kQueryTreesMax) +
+                Arena::size_bytes<std::uint32_t>(tasks) + Arena::size_bytes<GroupRounds>(tasks) +
+                Arena::size_bytes<WorkLists>(tasks) + Arena::size_bytes<QueryTree>(kQueryTreesMax) +
                 Arena::size_bytes<BoxQueries::TreePlan>(kQueryTreesMax) +
                 Arena::size_bytes<TreeRoot>(queries));
     if (!arena.ok()) {
@@ -79,6 +78,8 @@ std::optional<StagedProver> StagedProver::create(const Machine& machine, std::ui
     prover.groups_ = prover.arena_.take<GroupWork>(tasks + 1);
     prover.full_ = prover.arena_.take<QueryStatus>(tasks);
     prover.group_of_ = prover.arena_.take<std::uint32_t>(tasks);
+    prover.rounds_ = prover.arena_.take<GroupRounds>(tasks);
+    prover.left_ = prover.arena_.take<WorkLists>(tasks);
     prover.trees_ = prover.arena_.take<QueryTree>(kQueryTreesMax);
     prover.tree_plans_ = prover.arena_.take<BoxQueries::TreePlan>(kQueryTreesMax);
     prover.roots_ = prover.arena_.take<TreeRoot>(queries);
@@ -86,8 +87,8 @@ std::optional<StagedProver> StagedProver::create(const Machine& machine, std::ui
     return prover;
 }
 
-/// A group for each task that is open.
-void StagedProver::deal_groups(std::uint32_t open) noexcept {
+/// Assigns a group with its share to each open task.
+void StagedProver::deal_groups(std::uint32_t open, const WorkLists& lists) noexcept {
     std::fill(group_of_.begin(), group_of_.end(), kNoIndex);
     group_count_ = 0;
     for (const BoxItem& item : items_.first(open)) {
@@ -95,15 +96,26 @@ void StagedProver::deal_groups(std::uint32_t open) noexcept {
             group_of_[item.task] = group_count_++;
         }
     }
+    const WorkLists share = group_count_ == 0 ? WorkLists{} : share_of(lists, group_count_);
+    std::fill_n(groups_.begin(), group_count_, GroupWork{.share = share});
+    std::fill_n(rounds_.begin(), group_count_, GroupRounds{0, 0, false});
 }
 
-/// Halves of the nodes from `begin` on become nodes. Lazily, none of one that is proven.
+/// Makes the open items the roots of the next queries.
+void StagedProver::begin_round(std::uint32_t open) noexcept {
+    std::fill_n(nodes_.begin(), open, Node{kNoIndex, QueryStatus::not_run, true, false, true});
+    node_count_ = open;
+}
+
+/// Adds the halves of the nodes from `begin` on as nodes, except for groups that are done. If lazy,
+/// skips proven nodes.
 void StagedProver::grow_level(std::span<const JointBoxTask> tasks, std::uint32_t begin,
                               bool is_lazy) noexcept {
     const std::uint32_t end = node_count_;
     for (std::uint32_t i = begin; i < end; ++i) {
         const BoxItem& item = items_[i];
-        if (item.widest_axis == kNoIndex || (is_lazy && nodes_[i].is_covered)) {
+        if (item.widest_axis == kNoIndex || (is_lazy && nodes_[i].is_covered) ||
+            rounds_[group_of_[item.task]].is_done) {
             continue;
         }
         nodes_[i].is_leaf = false;
@@ -130,7 +142,7 @@ void StagedProver::ask(std::span<const JointBoxTask> tasks, std::uint32_t first,
     }
 }
 
-/// The known-answer test's queries, of a group of their own.
+/// Adds the known-answer test's queries in a separate group.
 std::span<Query> StagedProver::add_known_answer() noexcept {
     const std::uint32_t count = known_answer_mesh_ != kNoIndex ? 2 : 0;
     const std::span<Query> queries = queries_.subspan(query_count_, count);
@@ -148,14 +160,14 @@ void StagedProver::note(QueryStatus status) noexcept {
     lost_ = is_lost && lost_ == QueryStatus::ok ? status : lost_;
 }
 
-/// The known-answer test's results, behind those of `count` queries.
+/// Checks the known-answer test's results, which follow those of `count` queries.
 void StagedProver::judge_known_answer(const Engine& engine, std::uint32_t count,
                                       StagedWork& work) noexcept {
     if (known_answer_mesh_ == kNoIndex) {
         return;
     }
     const QueryResult &far = results_[count], &near = results_[count + 1];
-    // Of lists that all queries of a call share, as an engine without groups has them.
+    // In an engine without groups, all queries of a call share its lists.
     const bool is_full = engine.run_groups == nullptr && is_batch_lost(far, near);
     if (is_full) {
         std::fill_n(results_.begin(), count, far);
@@ -166,7 +178,7 @@ void StagedProver::judge_known_answer(const Engine& engine, std::uint32_t count,
     note(near.status);
 }
 
-/// False: the engine is lost, and nothing that it said in this cycle counts.
+/// False: the engine is lost, and all its results in this cycle are void.
 bool StagedProver::end_call(const Engine& engine, std::uint32_t queries,
                             StagedWork& work) noexcept {
     ++work.calls;
@@ -176,10 +188,10 @@ bool StagedProver::end_call(const Engine& engine, std::uint32_t queries,
     return lost_ == QueryStatus::ok;
 }
 
-/// What was asked. False: the engine is lost, and nothing that it said in this cycle counts.
+/// Runs the prepared queries. False: the engine is lost; all its results in this cycle are void.
 bool StagedProver::run(const Engine& engine, StagedWork& work) noexcept {
     const auto all = static_cast<std::uint32_t>(query_count_ + add_known_answer().size());
-    std::fill_n(results_.begin(), all, QueryResult{});  // an engine that is silent proves nothing
+    std::fill_n(results_.begin(), all, QueryResult{});  // a silent engine proves nothing
     engine(queries_.first(all), results_.first(all), groups_.first(group_count_ + 1));
     judge_known_answer(engine, query_count_, work);
     for (std::uint32_t i = 0; i < query_count_; ++i) {
@@ -193,8 +205,8 @@ bool StagedProver::run(const Engine& engine, StagedWork& work) noexcept {
     return end_call(engine, std::exchange(query_count_, 0), work);
 }
 
-/// The leaves of trees of this depth below the first so many nodes. False: they are none that an
-/// engine poses.
+/// Plans the leaves of trees of this depth below the first `roots` nodes. False: the engine cannot
+/// pose them.
 bool StagedProver::plan_parts(std::span<const JointBoxTask> tasks, std::uint32_t roots,
                               std::uint32_t depth) noexcept {
     if (!boxes_->are_float_only() || plan_.form != TreeForm::leaves || depth > kTreeDepthOfParts) {
@@ -212,9 +224,9 @@ bool StagedProver::plan_parts(std::span<const JointBoxTask> tasks, std::uint32_t
     return true;
 }
 
-/// In the last stage one part that is not far loses the task, and near contact most parts are not:
-/// so the first one is asked alone, before all of them are posed. Where its own share is too small
-/// for that it decides nothing.
+/// In the last stage one part that is not far loses the task, and near contact most parts are not.
+/// So this queries the first part alone before all of them are posed. If the query exceeds its own
+/// share, it decides nothing.
 bool StagedProver::is_lost_by_first_part(const Engine& engine, std::span<const JointBoxTask> tasks,
                                          std::span<JointBoxResult> results, std::uint32_t depth,
                                          StagedWork& work) noexcept {
@@ -247,7 +259,7 @@ bool StagedProver::is_lost_by_first_part(const Engine& engine, std::span<const J
     return true;
 }
 
-/// Asks what was planned; parts that are not far become nodes. As `run`.
+/// Queries the planned parts; those that are not far become nodes. Returns as `run`.
 bool StagedProver::run_parts(const Engine& engine, std::span<const JointBoxTask> tasks,
                              std::span<JointBoxResult> results, bool is_last,
                              StagedWork& work) noexcept {
@@ -257,7 +269,7 @@ bool StagedProver::run_parts(const Engine& engine, std::span<const JointBoxTask>
     std::fill(said.begin(), said.end(), QueryResult{});
     engine.run_parts(engine.self, parts_, known_answer, said, groups_.first(group_count_ + 1));
     judge_known_answer(engine, count, work);
-    std::uint32_t last = kNoIndex;  // a node of the task at hand, that stays open for good
+    std::uint32_t last = kNoIndex;  // the newest open node that may be split
     for (std::uint32_t i = 0; i < count; ++i) {
         const QueryResult& result = results_[i];
         const std::uint32_t root = i >> parts_.depth;
@@ -272,7 +284,7 @@ bool StagedProver::run_parts(const Engine& engine, std::span<const JointBoxTask>
         const bool may_be_split = may_help_to_split(result.status, parts_.trees[from.tree].r_mm);
         if (is_last && may_be_split && last != kNoIndex && items_[last].task == items_[root].task) {
             ++results[items_[root].task].queries;
-            nodes_[last].status = result.status;  // one that is open says it for all
+            nodes_[last].status = result.status;  // one open node represents the others
             continue;
         }
         boxes_->make_part(tasks[items_[root].task], items_[root], tree_plans_[from.tree],
@@ -283,12 +295,14 @@ bool StagedProver::run_parts(const Engine& engine, std::span<const JointBoxTask>
     return end_call(engine, count, work);
 }
 
-/// Trees of this depth below the nodes that there are.
+/// Queries trees of this depth below the present nodes.
 bool StagedProver::run_stage(const Engine& engine, std::span<const JointBoxTask> tasks,
                              std::span<JointBoxResult> results, std::uint32_t depth, bool is_last,
                              StagedWork& work) noexcept {
     const bool is_lazy = !engine.prefers_batches;
-    if (engine.run_parts != nullptr && (node_count_ << depth) + 2 <= engine.parts_max &&
+    const auto is_done = [](const GroupRounds& group) { return group.is_done; };
+    const bool asks_all = std::none_of(rounds_.begin(), rounds_.begin() + group_count_, is_done);
+    if (engine.run_parts != nullptr && asks_all && (node_count_ << depth) + 2 <= engine.parts_max &&
         plan_parts(tasks, node_count_, depth)) {
         return run_parts(engine, tasks, results, is_last, work);
     }
@@ -319,8 +333,83 @@ bool StagedProver::run_stage(const Engine& engine, std::span<const JointBoxTask>
     return true;
 }
 
-/// Whole boxes of the first `own` tasks, and those of the second half. Where that saves time, a
-/// task whose larger box is far is not asked again.
+/// Queries the open boxes once more, in a part of the stage's lists: this proves most whole boxes
+/// of pairs that are near, and not too near, without a cut. False: the engine is lost.
+bool StagedProver::run_again(const Engine& engine, std::span<const JointBoxTask> tasks,
+                             std::span<JointBoxResult> results, std::uint32_t& open,
+                             StagedWork& work) noexcept {
+    deal_groups(open, lists_of_whole_boxes(plan_));
+    begin_round(open);
+    ask(tasks, 0, open);
+    if (!run(engine, work)) {
+        return false;
+    }
+    for (const BoxItem& item : items_.first(open)) {  // one of each task
+        const GroupWork& group = groups_[group_of_[item.task]];
+        left_[item.task] = left_of(group.share, group.used);
+        add(work.used, group.used);
+    }
+    open = leave_open(results, open);
+    deal_groups(open, lists_of_rounds(plan_));
+    for (const BoxItem& item : items_.first(open)) {
+        add(groups_[group_of_[item.task]].share, left_[item.task]);
+    }
+    return true;
+}
+
+/// Selects the groups that halve once more: those with enough queries and an unspent share.
+/// False: none.
+bool StagedProver::plan_round(std::uint32_t open) noexcept {
+    for (GroupRounds& group : rounds_.first(group_count_)) {
+        group.open = 0;
+    }
+    for (const BoxItem& item : items_.first(open)) {
+        ++rounds_[group_of_[item.task]].open;
+    }
+    bool is_any = false;
+    for (std::uint32_t i = 0; i < group_count_; ++i) {
+        GroupRounds& group = rounds_[i];
+        const std::uint32_t queries = 2 * group.open;
+        group.is_done = group.is_done || group.open == 0 || queries > group.queries ||
+                        first_full(groups_[i]) != QueryStatus::ok;
+        group.queries -= group.is_done ? 0 : queries;
+        is_any = is_any || !group.is_done;
+    }
+    return is_any;
+}
+
+/// The second of three stages: after its first round, the depth of a group depends on its own open
+/// boxes only. A round that exceeds the share is lost, earlier rounds remain valid. False: the
+/// engine is lost.
+bool StagedProver::run_rounds(const Engine& engine, std::span<const JointBoxTask> tasks,
+                              std::span<JointBoxResult> results, std::uint32_t& open,
+                              std::uint32_t& depth_left, StagedWork& work) noexcept {
+    ++work.stages;
+    if (!run_again(engine, tasks, results, open, work)) {
+        return false;
+    }
+    const std::uint32_t queries = open == 0 ? 0 : plan_.queries[1] / group_count_;
+    std::uint32_t depth = std::min(depth_left, first_round_depth(queries, plan_.form));
+    for (GroupRounds& group : rounds_.first(group_count_)) {
+        group.queries = queries - tree_queries(depth, plan_.form);
+    }
+    for (std::uint32_t round = 0; depth != 0; ++round) {
+        depth_left -= depth;
+        begin_round(open);
+        if (!run_stage(engine, tasks, results, depth, false, work)) {
+            return false;
+        }
+        open = leave_open(results, open);
+        depth = round + 1 < kRoundsMax && depth_left != 0 && plan_round(open) ? 1 : 0;
+    }
+    for (const GroupWork& group : groups_.first(group_count_)) {
+        add(work.used, group.used);
+    }
+    return true;
+}
+
+/// Queries the whole boxes of the first `own` tasks and those of the second half. An engine that
+/// does not prefer batches skips a task whose larger box is far.
 bool StagedProver::run_first(const Engine& engine, std::span<const JointBoxTask> tasks,
                              std::uint32_t own, StagedWork& work) noexcept {
     if (engine.prefers_batches || own == tasks.size()) {
@@ -352,8 +441,8 @@ bool StagedProver::run_first(const Engine& engine, std::span<const JointBoxTask>
     return (query_count_ == 0 && wider != 0) || run(engine, work);
 }
 
-/// The first stage is over: what it proved of a larger box it proved of the task, and what it did
-/// not is not asked again, unless no task is open. Returns how many stay open.
+/// Ends the first stage: the proof of a larger box also proves its task. Drops unproven larger
+/// boxes unless `halves_wider` is set and no task is open. Returns the number of open boxes.
 std::uint32_t StagedProver::take_wider(std::span<JointBoxResult> results, std::uint32_t own,
                                        std::uint32_t open, bool halves_wider) const noexcept {
     for (const BoxItem& item : items_.first(open)) {
@@ -381,7 +470,7 @@ std::uint32_t StagedProver::take_wider(std::span<JointBoxResult> results, std::u
     return kept;
 }
 
-/// What a far box proves of its parts; and nothing is proven of a group whose share was spent.
+/// Marks the parts of far boxes as proven; a group that spent its share proves nothing.
 void StagedProver::cover(std::span<JointBoxResult> results) noexcept {
     for (std::uint32_t i = 0; i < node_count_; ++i) {
         Node& node = nodes_[i];
@@ -397,8 +486,8 @@ void StagedProver::cover(std::span<JointBoxResult> results) noexcept {
     }
 }
 
-/// Judges a stage. What it leaves open becomes the roots of the next: the leaves that are not
-/// proven, and of a group whose share was spent what it began with. Returns how many.
+/// Evaluates a stage. Its open boxes become the roots of the next: the unproven leaves or, for a
+/// group that spent its share, the roots of this stage. Returns their number.
 std::uint32_t StagedProver::leave_open(std::span<JointBoxResult> results,
                                        std::uint32_t roots) noexcept {
     const auto is_spent = [this](const BoxItem& item) {
@@ -429,6 +518,16 @@ std::uint32_t StagedProver::leave_open(std::span<JointBoxResult> results,
     return open;
 }
 
+/// A lost engine proves nothing in this cycle.
+void StagedProver::lose(std::span<JointBoxResult> results) const noexcept {
+    for (JointBoxResult& result : results) {
+        if (result.proof != JointBoxProof::bad_box) {
+            result.proof = JointBoxProof::engine_failed;
+            result.status = lost_;
+        }
+    }
+}
+
 StagedWork StagedProver::prove(const Engine& engine, std::span<const JointBoxTask> tasks,
                                std::span<JointBoxResult> results, bool has_wider,
                                bool halves_wider) noexcept {
@@ -443,22 +542,29 @@ StagedWork StagedProver::prove(const Engine& engine, std::span<const JointBoxTas
     const bool fits = open <= plan_.queries[0];
     for (std::uint32_t stage = 0; fits && stage < plan_.stages; ++stage) {
         const bool is_first = stage == 0;
+        const Engine here = engine.of_stage(stage);
+        if (asks_again(stage, plan_)) {
+            if (open != 0 && !run_rounds(here, tasks, results, open, depth_left, work)) {
+                lose(results.first(tasks.size()));
+                return work;
+            }
+            continue;
+        }
         const std::uint32_t depth =
             is_first ? 0 : std::min(depth_left, tree_depth(plan_.queries[stage], open, plan_.form));
         if (is_first ? open == 0 && known_answer_mesh_ == kNoIndex : depth == 0) {
-            continue;  // a later stage may have queries enough for a level of them all
+            continue;  // a later stage may have enough queries for a level of all trees
         }
         depth_left -= depth;
-        deal_groups(open);
-        const std::uint32_t pairs = has_wider && is_first ? (group_count_ + 1) / 2 : group_count_;
-        const WorkLists share =
-            pairs == 0 ? WorkLists{}
-                       : first_share_of(plan_.lists[stage], pairs, plan_.stages == 1, has_wider);
-        std::fill_n(groups_.begin(), group_count_, GroupWork{.share = share});
-        std::fill_n(nodes_.begin(), open, Node{kNoIndex, QueryStatus::not_run, true, false, true});
-        node_count_ = open;
+        deal_groups(open, plan_.lists[stage]);
+        if (is_first && has_wider && group_count_ != 0) {
+            const std::uint32_t pairs = (group_count_ + 1) / 2;
+            const WorkLists share =
+                first_share_of(plan_.lists[0], pairs, plan_.stages == 1, has_wider);
+            std::fill_n(groups_.begin(), group_count_, GroupWork{.share = share});
+        }
+        begin_round(open);
         ++work.stages;
-        const Engine here = engine.of_stage(stage);
         const bool is_last = stage + 1 == plan_.stages;
         if (asks_first_part_ && is_last && !is_first && group_count_ == 1 &&
             is_lost_by_first_part(engine.of_stage(stage - 1), tasks, results, depth, work)) {
@@ -467,12 +573,7 @@ StagedWork StagedProver::prove(const Engine& engine, std::span<const JointBoxTas
         if (lost_ != QueryStatus::ok ||
             !(is_first ? run_first(here, tasks, own, work)
                        : run_stage(here, tasks, results, depth, is_last, work))) {
-            for (JointBoxResult& result : results.first(tasks.size())) {
-                if (result.proof != JointBoxProof::bad_box) {
-                    result.proof = JointBoxProof::engine_failed;
-                    result.status = lost_;
-                }
-            }
+            lose(results.first(tasks.size()));
             return work;
         }
         for (const GroupWork& group : groups_.first(group_count_)) {

@@ -46,11 +46,11 @@ double slowest_us(const Machine& machine, const Engine& engine) {
     return slowest;
 }
 
-/// Stages of so few queries are answered sooner by a core than by a launch
+/// A core runs a stage of so few queries faster than a launch does
 /// (docs/measurements/gpu-fill.txt).
 constexpr std::uint32_t kHostQueriesMax = 64;
 
-/// How many of the first stages have that few; the last one is the GPU's.
+/// Number of first stages with at most that many queries; the last stage is the GPU's.
 std::uint32_t host_stages_max(const CycleDemand& demand) {
     std::uint32_t stages = 0;
     while (demand.plan && stages + 1 < demand.plan->stages &&
@@ -61,7 +61,7 @@ std::uint32_t host_stages_max(const CycleDemand& demand) {
     return stages;
 }
 
-/// What the longest cycle consists of.
+/// Parts of the longest cycle, as text.
 std::string parts_of(const MeasuredGpuCycle& longest) {
     std::string launches =
         fmt::format("{} {}", longest.launches, longest.launches == 1 ? "launch" : "launches");
@@ -76,7 +76,7 @@ std::string parts_of(const MeasuredGpuCycle& longest) {
                        longest.host_us);
 }
 
-/// Whether the longest cycle fits into the deadline; `words` say by how much, or what to change.
+/// Whether the longest cycle fits into the deadline. `words`: both times, and what to change.
 bool is_admitted(const LoadedMachine& loaded, const CudaEngine& gpu, const CycleDemand& demand,
                  std::uint32_t multiprocessors, ChosenEngine& out) {
     const std::optional<MeasuredGpuCycle> measured =
@@ -100,8 +100,8 @@ bool is_admitted(const LoadedMachine& loaded, const CudaEngine& gpu, const Cycle
     return false;
 }
 
-/// Whether an engine on a GPU poses whatever may be open: the later stages in one launch each, of
-/// no more pairs and joints than it has room for, and no pieces of a look-ahead path.
+/// Whether an engine on a GPU poses every box that may be open: one launch runs a later stage or a
+/// round, pairs and joints fit its limits, and no box is a piece of a look-ahead path.
 bool poses_parts(const Machine& machine, const CyclePlan& plan, std::uint32_t tasks) {
     bool fits = machine.can.look_ahead_samples == 0 && plan.form == TreeForm::leaves &&
                 lists_of(plan).rechecks == 0 && tasks <= kQueryTreesMax;
@@ -157,7 +157,7 @@ std::optional<MeasuredGpuCycle> measure_gpu_cycle(const LoadedMachine& loaded,
             break;
         }
     }
-    // Where a jog begins nothing is proven: all of that cycle's calls are the GPU's.
+    // A cycle that begins a jog proves no certificate: the GPU runs all of its calls.
     const bool is_measured = here.host_stages == 0;
     here.host_stages = 0;
     const std::vector<WorstCaseCycle> all =

@@ -14,20 +14,20 @@
 namespace axg {
 namespace {
 
-/// Of the lists that the machine file states, in forty-eighths.
+/// Lengths in forty-eighths of the lists that the machine file states.
 struct PlanStep {
     std::uint32_t nodes, leaves, rows, triangles;
 };
 // Few steps and not any number: two starts on one machine mostly agree.
-constexpr std::array<PlanStep, kPlanSteps> kSteps{{{16, 10, 12, 24},
-                                                   {32, 20, 24, 36},
-                                                   {48, 48, 32, 48},
+constexpr std::array<PlanStep, kPlanSteps> kSteps{{{16, 10, 14, 11},
+                                                   {32, 20, 28, 16},
+                                                   {48, 48, 48, 32},
                                                    {48, 48, 48, 48},
-                                                   {48, 58, 48, 144},
-                                                   {96, 116, 96, 192},
-                                                   {192, 232, 192, 384}}};
+                                                   {48, 58, 56, 96},
+                                                   {96, 116, 112, 144},
+                                                   {192, 232, 224, 288}}};
 
-// What is chosen has to pass the admission a moment later, on another thread.
+// The chosen plan has to pass the admission a moment later, on another thread.
 constexpr double kChosenShare = 0.95;
 
 CycleMeasureOptions quick_options(const CyclePlan& plan, const Machine& machine) {

@@ -14,9 +14,9 @@ namespace {
 
 constexpr std::uint32_t kMoreRowsMax = 16;
 
-/// A stage's lists as those of a batch. Its pairs of nodes lie on all levels together, the batch's
-/// on each: a batch of these comes to no less. Nor does one with more rows, where a batch that
-/// fills the other lists takes them.
+/// Converts a stage's lists to those of a batch. A stage counts node pairs over all tree levels, a
+/// batch counts them on each: the batch does no less work. Adds rows until a batch can fill the
+/// other lists; that is no less work either.
 Capacities capacities_of(Capacities capacities, const WorkLists& lists, std::uint32_t queries,
                          std::uint32_t tree_levels) {
     BatchCapacities& batch = capacities.batch;
@@ -34,7 +34,7 @@ Capacities capacities_of(Capacities capacities, const WorkLists& lists, std::uin
     return capacities;
 }
 
-/// Calls are added to a cycle one behind the other.
+/// Appends calls to a cycle.
 class CycleMaker {
   public:
     CycleMaker(const Capacities& capacities, std::uint32_t tree_levels) : capacities_(capacities) {
@@ -78,6 +78,17 @@ WorkLists most_of_first(const CyclePlan& plan, bool asks_twice) noexcept {
     return asks_twice && plan.stages > 1 ? twice(plan.lists[0]) : plan.lists[0];
 }
 
+/// Adds a launch for the open boxes, and one a round; the first round has the work of all rounds.
+void add_rounds(const CycleDemand& demand, CycleMaker& proof) {
+    const CyclePlan& plan = *demand.plan;
+    const std::uint32_t trees = demand.poses_parts ? demand.tasks : 0;
+    proof.stage(lists_of_whole_boxes(plan), demand.tasks + kKnownAnswers);
+    proof.stage(lists_of_rounds(plan), plan.queries[1] + kKnownAnswers, trees, trees);
+    for (std::uint32_t round = 1; round < kRoundsMax; ++round) {
+        proof.stage(kKnownAnswerShare, 2 + kKnownAnswers, demand.poses_parts ? 1 : 0, trees);
+    }
+}
+
 }  // namespace
 
 std::vector<WorstCaseCycle> longest_gpu_cycles(const Capacities& capacities,
@@ -93,6 +104,10 @@ std::vector<WorstCaseCycle> longest_gpu_cycles(const Capacities& capacities,
                     (demand.asks_twice ? 2 : 1) * demand.tasks + kKnownAnswers);
     }
     for (std::uint32_t stage = std::max(demand.host_stages, 1U); stage < plan.stages; ++stage) {
+        if (asks_again(stage, plan)) {
+            add_rounds(demand, proof);
+            continue;
+        }
         const std::uint32_t open = stage == 1 ? demand.tasks : plan.queries[stage - 1];
         proof.stage(plan.lists[stage], plan.queries[stage] + kKnownAnswers,
                     demand.poses_parts ? open : 0, demand.tasks);

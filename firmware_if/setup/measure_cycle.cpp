@@ -31,6 +31,12 @@ double us_of(clockid_t clock) noexcept {
     return static_cast<double>(now.tv_sec) * 1e6 + static_cast<double>(now.tv_nsec) * 1e-3;
 }
 
+/// Calls of stages from this one on, of engines that prefer batches: at most.
+std::uint32_t calls_from(const CyclePlan& plan, std::uint32_t stage) {
+    const bool has_rounds = plan.stages > 1 && stage < 2 && asks_again(1, plan);
+    return plan.stages - stage + (has_rounds ? kRoundsMax : 0);
+}
+
 /// Replies at once: every pair is far, or none.
 Engine idle_engine(bool& is_far) noexcept {
     const auto run = [](void* self, std::span<const Query>,
@@ -42,8 +48,8 @@ Engine idle_engine(bool& is_far) noexcept {
     return {.self = &is_far, .run = run};
 }
 
-/// An engine on a GPU that replies at once. Of the first stage so many pairs are left open, and
-/// everything is far from one call on: then the rays are cast that a proven pair needs.
+/// An engine on a GPU that replies at once. Its first call leaves `open` pairs open; from call
+/// `far_from` on all queries are far, so that the cycle casts the rays that proven pairs need.
 struct IdleGpu {
     std::uint32_t tasks = 0, open = 0, far_from = 0;  // far_from: calls before it
     std::uint32_t calls = 0;
@@ -79,7 +85,8 @@ struct IdleGpu {
     }
 };
 
-/// Boxes that never end: of axes at full speed, in a machine of which nothing is known beforehand.
+/// A machine whose boxes stay open in every stage at full speed: it has no travel proofs, no
+/// look-ahead path, and independent stops.
 LoadedMachine endless(const LoadedMachine& loaded) {
     LoadedMachine out = loaded;
     out.machine.travel.proofs.clear();
@@ -94,7 +101,7 @@ class Chain {
     Chain(const Machine& machine, StopCertificate& certificate, const ContainmentTest& test)
         : machine_(machine), certificate_(certificate), test_(test) {}
 
-    /// Two snapshots, the fewest that anything is proven of: the widest boxes.
+    /// Two snapshots, the fewest that allow a proof: they give the widest boxes.
     void look_at(std::uint32_t position) noexcept {
         before_ = sampled_position(machine_, position);
         before_.tool = machine_.first_tool;
@@ -119,7 +126,7 @@ class Chain {
         const double cpu_end_us = us_of(CLOCK_THREAD_CPUTIME_ID);
         return {us_of(CLOCK_MONOTONIC) - wall_us, cpu_end_us - cpu_us};
     }
-    /// So that the next cycle is the first at its place: every pair is tested for containment.
+    /// Makes the next cycle the first at its position: it tests every pair for containment.
     void forget() noexcept {
         bool is_far = false;
         static_cast<void>(run(idle_engine(is_far)));
@@ -145,7 +152,7 @@ class Chain {
     CycleResult decision_;
 };
 
-/// Of the sampled positions the one at which rays cost most.
+/// Moves the chain to the sampled position at which rays cost most.
 void look_at_most_rays(Chain& chain) {
     std::uint64_t most = 0;
     std::uint32_t at = 0;
@@ -170,7 +177,7 @@ struct MeasuredMachine {
     std::optional<CpuEngine> engine;
     std::optional<ContainmentTest> test;
     std::optional<StopCertificate> certificate;
-    std::optional<Chain> chain;  // empty: `fault` says why
+    std::optional<Chain> chain;  // empty: the reason is in fault()
 
     MeasuredMachine(const LoadedMachine& from, const CyclePlan& plan)
         : loaded(endless(from)),
@@ -194,7 +201,7 @@ CycleTime least_of(const CycleTime& a, const CycleTime& b) noexcept {
     return {std::min(a.wall_us, b.wall_us), std::min(a.cpu_us, b.cpu_us)};
 }
 
-/// As the condition says of the caches.
+/// Brings the caches into the state that the condition names.
 void prepare(CacheCondition condition, ColdCaches& caches,
              std::span<const std::byte> trees) noexcept {
     if (condition == CacheCondition::warm) {
@@ -207,7 +214,7 @@ void prepare(CacheCondition condition, ColdCaches& caches,
     }
 }
 
-/// Every repeat begins with what the condition says of the caches.
+/// Measures repeats of a cycle, each from the cache state of the condition.
 class Repeats {
   public:
     Repeats(Chain& chain, LongestCycle& cycle, ColdCaches& caches)
@@ -291,8 +298,8 @@ std::string measure_shape(const CycleShape& shape, const Machine& machine,
     return {};
 }
 
-/// A constructed longest cycle whose first stages the CPU engine answers, and a GPU at once those
-/// behind them.
+/// A constructed longest cycle: the CPU engine runs its first stages, and an idle GPU replies at
+/// once to the later ones.
 struct SharedCycle {
     std::uint32_t host_stages = 0;
     bool poses_parts = false;
@@ -324,7 +331,8 @@ struct SharedCycle {
     }
 };
 
-/// Of all shapes, proven in the last stage or not, the longest, and that under every condition.
+/// Finds the longest of all shapes and of the stages that prove them, then measures that one under
+/// every condition.
 std::optional<double> measure_with_stages(MeasuredMachine& measured, const CyclePlan& plan,
                                           std::uint32_t host_stages, bool poses_parts,
                                           std::string& fault) {
@@ -332,7 +340,7 @@ std::optional<double> measure_with_stages(MeasuredMachine& measured, const Cycle
     const Machine& machine = measured.loaded.machine;
     const LongestCycle::Options made =
         longest_options(machine, plan, measured.engine->memory().trees_bytes, LaneSet::widest);
-    const std::uint32_t of_gpu = plan.stages - host_stages;
+    const std::uint32_t calls = calls_from(plan, host_stages);
     ColdCaches caches;
     CycleShape longest;
     SharedCycle cycle{.host_stages = host_stages, .poses_parts = poses_parts}, longest_cycle;
@@ -348,7 +356,7 @@ std::optional<double> measure_with_stages(MeasuredMachine& measured, const Cycle
         if (!constructed && shape.layout == CycleLayout::rows) {
             return std::nullopt;
         }
-        for (const std::uint32_t far_from : {of_gpu - 1, of_gpu}) {
+        for (std::uint32_t far_from = calls < 3 ? calls - 1 : 1; far_from <= calls; ++far_from) {
             cycle.far_from = far_from;
             const std::optional<double> us =
                 constructed ? take(*constructed, CacheCondition::code_cold) : 0.0;
@@ -410,13 +418,13 @@ std::optional<double> measure_host_us(const LoadedMachine& loaded, const CyclePl
         }
         return least;
     };
-    // A call's queries are not most where most pairs are open, and proven pairs cast rays.
+    // A call does not have most queries when most pairs are open, and proven pairs cast rays.
     IdleGpu longest;
     double longest_us = 0;
     const std::uint32_t tasks = chain.tasks();
     for (const CycleShape& shape :
          cycle_shapes(plan, tasks, tries_longer(measured.loaded.machine.can.permit_samples))) {
-        for (const std::uint32_t far_from : {1U, plan.stages - 1, plan.stages}) {
+        for (std::uint32_t far_from = 1; far_from <= calls_from(plan, 0); ++far_from) {
             const IdleGpu gpu{.tasks = tasks, .open = shape.open, .far_from = far_from};
             const double us = least_us(gpu, [] {});
             if (us > longest_us) {
@@ -455,7 +463,7 @@ std::optional<CycleMeasurement> measure_cycle(const LoadedMachine& loaded, const
     for (std::uint32_t i = 0; i < kCycleRepeats; ++i) {
         out.posing = least_of(out.posing, chain.run(idle_engine(is_far)));
     }
-    if (out.tasks == 0) {  // nothing is ever asked
+    if (out.tasks == 0) {  // no pair, no query
         out.lines.push_back({.shape = {.tasks = 0}, .least = out.posing, .wall_us = {}});
         return out;
     }

@@ -22,7 +22,7 @@ CLAIMS = [
     (README, r"\[(\d+) missed in\s1e8\]", "docs/measurements/certified-pairs.md",
      r"missed contacts \| (\d+)"),
     (README, r"\[(\d+) us with\s+AVX-512 and (\d+)\s+us\s+with\s+AVX2\]",
-     "docs/measurements/bounded-cycle.md", r"\| 3, default \|[^|]*\| \**(\d+)\** \| \**(\d+)"),
+     "docs/measurements/bounded-cycle.md", r"\| 3, default \|[^|]*\| (\d+), \d+ \| (\d+)"),
     (README, r"default deadline is (\d+) us", "docs/theory/architecture.md",
      r"last frame to verdict \| (\d+) us"),
     (GUARD, r"ends after (\d+) to (\d+) ms", "docs/reference/machine-file.md",

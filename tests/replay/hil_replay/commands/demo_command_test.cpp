@@ -63,10 +63,10 @@ TEST_F(DemoCommand, ShowsBothProgramsAndTheStopInPlainWords) {
     for (const char* const text :
          {"1  paper-trunnion-clean.ngc runs to its end\n", "2  paper-trunnion-demo.ngc drives ",
           "time of a cycle: median ", "; deadline 500 us",
-          "stop at 40.854 s, line 699: G1 X0.0000 Y105.7850 ",
+          "stop at 40.875 s, line 700: G1 X0.0000 Y106.2623 ",
           "could not be proven clear within the time of a cycle\n",
-          "they are at least 3.9125 mm apart, the proof of a stop needs up to 9.7087 mm\n",
-          "without the guard, cutter and plate are in contact 0.219 s later"}) {
+          "they are at least 4.6609 mm apart, the proof of a stop needs up to 9.7041 mm\n",
+          "without the guard, cutter and plate are in contact 0.198 s later"}) {
         EXPECT_TRUE(shows(text)) << text << "\n" << screen;
     }
     EXPECT_FALSE(shows("leaf_pairs")) << "how the guard is built is a detail";

@@ -57,9 +57,9 @@ TEST_F(DriveCommand, TheDemoIsStoppedAndSaysWhereAndHowFarFromContact) {
                     [](const Json& way) { return way["axis"] == "Z" && way["direction"] == "+"; }))
         << "the cutter goes up";
     // The block whose target lies beyond the stop.
-    EXPECT_EQ(result["program_block"].get<std::string>().rfind("G1 X0.0000 Y105.7850 ", 0), 0U)
+    EXPECT_EQ(result["program_block"].get<std::string>().rfind("G1 X0.0000 Y106.2623 ", 0), 0U)
         << result["program_block"];
-    EXPECT_LT(result["rest"]["Y_mm"].get<double>(), 105.785);
+    EXPECT_LT(result["rest"]["Y_mm"].get<double>(), 106.2623);
     ASSERT_EQ(drive(kDemoProgram, "--details"), 10);
     EXPECT_NE(shop.out.find("paper-trunnion-demo.ngc:" +
                             std::to_string(result["program_line"].get<int>()) + ": G1 X0.0000 "),

@@ -42,13 +42,13 @@ const Shipped kShipped[] = {
     {"paper-trunnion", "paper-trunnion-clean", {}, {}, {}},
     {"paper-trunnion",
      "paper-trunnion-demo",
-     {"cutter-c", 40.854405},
+     {"cutter-c", 40.875405},
      {"cutter-c", 41.307105},
      {"cutter-c", 41.316105}},
     {"paper-trunnion", "paper-trunnion-near", {"cutter-c", 16.907405}, {}, {}},
     {"spindle-tilting", "spindle-tilting", {}, {}, {}},
     {"table-spindle-tilting", "table-spindle-tilting", {}, {}, {}},
-    {"table-spindle-tilting", "table-spindle-tilting-near", {"cutter-plate", 15.546405}, {}, {}},
+    {"table-spindle-tilting", "table-spindle-tilting-near", {"cutter-plate", 15.552405}, {}, {}},
 };
 
 /// The shipped machine with what another board sends and promises.

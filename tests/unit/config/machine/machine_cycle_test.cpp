@@ -37,7 +37,7 @@ TEST(MachineCycle, WithoutAWordAndWithAutoItIsTheUsualPlan) {
         EXPECT_EQ(plan.queries[0], 24U) << "three queries a pair";
         EXPECT_EQ(plan.queries[1], 32U);
         EXPECT_EQ(plan.queries[2], 512U);
-        EXPECT_EQ(lists_of(plan), (WorkLists{192, 240, 3072, 1024, 0}));
+        EXPECT_EQ(lists_of(plan), (WorkLists{192, 240, 2816, 2240, 0}));
         EXPECT_EQ(plan.depth_max, kStageDepthMax);
     }
 }

@@ -80,12 +80,12 @@ TEST(FirstPart, AloneMayLoseTheLastStage) {
         EXPECT_EQ(last.slides.results[0].proof, JointBoxProof::budget_spent);
         EXPECT_NEAR(last.slides.results[0].open.centre[0], 7.5, 1e-9);
 
-        SharedStages third([](const Query& query) {  // after the second stage all 16 parts are open
+        SharedStages third([](const Query& query) {  // after the second stage all 8 parts are open
             return query.r_mm <= 0.7 ? Proof::far : Proof::not_proven;
         });
         third.prove(is_shared, 3);
         EXPECT_EQ(third.slides.results[0].proof, JointBoxProof::proven);
-        EXPECT_EQ(third.work.queries, 1U + 16U + 64U);
+        EXPECT_EQ(third.work.queries, 2U + 14U + 64U);
 
         SharedStages two([](const Query&) { return Proof::not_proven; }, 2);
         two.prove(is_shared);
@@ -102,9 +102,9 @@ TEST(FirstPart, IsNotAskedWhereTheStageBeforeIsTheGpus) {
         near.prove(true, 3);
         EXPECT_EQ(near.slides.results[0].proof, JointBoxProof::budget_spent);
         EXPECT_EQ(near.host.calls.size(), of_host);
-        EXPECT_EQ(near.gpu.calls.size(), 3U - of_host);
-        EXPECT_EQ(near.work.queries, 1U + 16U + 64U);
-        EXPECT_EQ(near.work.planned_queries, 1U + 16U + 64U);
+        EXPECT_EQ(near.gpu.calls.size(), 6U - of_host);
+        EXPECT_EQ(near.work.queries, 2U + 14U + 64U);
+        EXPECT_EQ(near.work.planned_queries, 2U + 14U + 64U);
     }
 }
 

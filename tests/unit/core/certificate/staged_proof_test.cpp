@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "core/collision/known_answer.hpp"
@@ -57,7 +58,8 @@ TEST(StagedProver, TheFirstStagesMayGoToTheHost) {
             Engine both = gpu.engine();
             both.host = {of_host, &host, ToldEngine::run};
             const StagedWork found = prover->prove(both, other.tasks, other.results);
-            EXPECT_EQ(gpu.calls.size(), stages - of_host);
+            // Of three stages the second has two calls: the boxes once more, and a round.
+            EXPECT_EQ(gpu.calls.size(), stages - of_host + (stages == 3 && of_host < 2 ? 1 : 0));
             EXPECT_EQ(host.calls.empty(), of_host == 0);
             EXPECT_EQ(found.stages, wanted.stages);
             EXPECT_EQ(found.known_answer_signature, kKnownAnswerSignature);
@@ -161,10 +163,11 @@ TEST(StagedProver, ATreeIsAskedAsDeepAsItsQueriesFitAndNoDeeper) {
 
 // A far box proves its own parts, and no other.
 TEST(StagedProver, EveryLeafOfATreeIsNeeded) {
-    for (const TreeForm form : {TreeForm::whole, TreeForm::leaves}) {
+    for (const auto& [form, stages] :
+         {std::pair{TreeForm::whole, 2U}, {TreeForm::leaves, 2U}, {TreeForm::leaves, 3U}}) {
         for (const bool prefers_batches : {false, true}) {
             for (int leaf = 0; leaf < 8; ++leaf) {
-                const double bad_mm = -7 + 2 * leaf;
+                const double bad_mm = -6.7 + 2 * leaf;
                 Slides slides;
                 ToldEngine fake = far_to(1.6);
                 fake.prefers_batches = prefers_batches;
@@ -173,8 +176,11 @@ TEST(StagedProver, EveryLeafOfATreeIsNeeded) {
                     const bool is_bad = std::fabs(query.pose.t[0] - bad_mm) < reach_mm;
                     return is_bad || query.r_mm > 2.6 ? Proof::not_proven : Proof::far;
                 };
-                slides.prove(fake, Slides::plan(2, form, 14));
+                slides.prove(fake, Slides::plan(stages, form, 14));
                 EXPECT_EQ(slides.results[0].proof, JointBoxProof::budget_spent) << leaf;
+                fake.judge = far_to(1.6).judge;
+                slides.prove(fake, Slides::plan(stages, form, 14));
+                EXPECT_EQ(slides.results[0].proof, JointBoxProof::proven) << leaf;
             }
         }
     }
@@ -211,22 +217,96 @@ TEST(StagedProver, TheThirdStageAsksBelowWhatTheSecondLeftOpen) {
     slides.prove(fake, Slides::plan(2, TreeForm::leaves, 4));
     EXPECT_EQ(slides.results[0].proof, JointBoxProof::budget_spent) << "parts of 4 mm";
     ToldEngine again = far_to(1.6);
-    slides.prove(again, Slides::plan(3, TreeForm::leaves, 8));
+    slides.prove(again, Slides::plan(3, TreeForm::leaves, 14));
     EXPECT_EQ(slides.results[0].proof, JointBoxProof::proven);
     EXPECT_EQ(slides.work.stages, 2U);
     ToldEngine deeper{.judge = [](const Query& query) {
         const bool is_near_end = query.pose.t[0] > 6.5;  // the last part of 2 mm wants halves
         return query.r_mm <= (is_near_end ? 1.1 : 1.6) ? Proof::far : Proof::not_proven;
     }};
-    slides.prove(deeper, Slides::plan(3, TreeForm::leaves, 8));
+    slides.prove(deeper, Slides::plan(3, TreeForm::leaves, 14));
     EXPECT_EQ(slides.results[0].proof, JointBoxProof::proven);
     EXPECT_EQ(slides.work.stages, 3U);
-    ASSERT_EQ(deeper.groups.size(), 3U);
-    EXPECT_FALSE(deeper.groups[1][0].needs_all) << "the third stage wants every result";
-    EXPECT_TRUE(deeper.groups[2][0].needs_all);
+    ASSERT_EQ(deeper.groups.size(), 6U) << "whole, once more, three rounds, the last stage";
+    EXPECT_FALSE(deeper.groups[4][0].needs_all) << "the third stage wants every result";
+    EXPECT_TRUE(deeper.groups[5][0].needs_all);
 }
 
-// Nine halvings of every part: the second of three stages leaves none of its 32 boxes proven.
+// The second of three stages: what is far is halved no further, and a group has queries of its own.
+TEST(StagedProver, ARoundHalvesOnlyWhatIsOpen) {
+    for (const bool prefers_batches : {false, true}) {
+        Slides slides(2);
+        ToldEngine fake{.judge =
+                            [](const Query& query) {
+                                const bool is_end = query.pose.t[0] + query.r_mm - 0.5 > 7.9;
+                                const double far_mm = is_end ? 1.1 : 4.6;  // in four halvings
+                                return query.mesh_a == 1 && query.r_mm <= far_mm
+                                           ? Proof::far
+                                           : Proof::not_proven;
+                            },
+                        .prefers_batches = prefers_batches};
+        slides.prove(fake, Slides::plan(3, TreeForm::leaves, 40));
+        EXPECT_EQ(slides.results[0].proof, JointBoxProof::proven);
+        EXPECT_EQ(slides.results[0].queries, 2U + 4 * 2U) << "an eighth of its twenty at once";
+        EXPECT_EQ(slides.results[1].proof, JointBoxProof::budget_spent);
+        EXPECT_EQ(slides.results[1].queries, 2U + 2U + 4U + 8U + 8U * 4U) << "no fourth round";
+        ASSERT_EQ(fake.calls.size(), 2U + 4U + 1U);
+        EXPECT_EQ(fake.calls[5].size(), 2U) << "the other group has no more queries";
+    }
+}
+
+TEST(StagedProver, BoxesAreHalvedInSoManyRoundsAndNoMore) {
+    Slides slides;
+    ToldEngine fake{.judge = [](const Query& query) {
+        const bool is_end = query.pose.t[0] + query.r_mm - 0.5 > 7.9999;
+        return is_end ? Proof::not_proven : Proof::far;
+    }};
+    CyclePlan plan = Slides::plan(3, TreeForm::leaves, 64);
+    plan.queries[2] = 1;
+    slides.prove(fake, plan);
+    EXPECT_EQ(fake.calls.size(), 2U + kRoundsMax);
+    EXPECT_EQ(slides.results[0].proof, JointBoxProof::budget_spent);
+}
+
+// A quarter of the stage's lists for the whole boxes, and the rest for those that stay open: each
+// has what it left of its first share besides, and nothing of another group's.
+TEST(StagedProver, WhoIsAskedAgainKeepsWhatItLeaves) {
+    for (const bool prefers_batches : {false, true}) {
+        Slides slides(4);
+        CyclePlan plan = Slides::plan(3, TreeForm::leaves, 32);
+        plan.lists[1] = {80, 160, 240, 1024, 40};
+        ToldEngine fake{.judge =
+                            [](const Query& query) {
+                                return query.mesh_a > 2 || query.r_mm <= 1.6 ? Proof::far
+                                                                             : Proof::not_proven;
+                            },
+                        .prefers_batches = prefers_batches};
+        // Far only in the second call: the first had too short a list for pairs 3 and 4.
+        fake.spoil = [](std::uint32_t call, std::span<const Query>, std::span<QueryResult> results,
+                        std::span<GroupWork> groups) {
+            if (call == 0) {
+                groups[2].used.leaf_pairs = groups[3].used.leaf_pairs =
+                    groups[2].share.leaf_pairs + 1;
+            }
+            if (call == 1) {
+                groups[0].used = {1, 2, 3, 16, 1};
+                groups[1].used = {6, 2, 3, 64, 1};  // more nodes than its share
+                results[0].proof = results[1].proof = Proof::not_proven;
+            }
+        };
+        slides.prove(fake, plan);
+        for (const std::uint32_t i : {0U, 1U, 2U, 3U}) {
+            EXPECT_EQ(slides.results[i].proof, JointBoxProof::proven) << i;
+        }
+        ASSERT_GE(fake.groups.size(), 3U);
+        EXPECT_EQ(fake.groups[1][0].share, (WorkLists{5, 10, 15, 64, 2}));
+        EXPECT_EQ(fake.groups[2][0].share, (WorkLists{30 + 4, 60 + 8, 90 + 12, 384 + 48, 15 + 1}));
+        EXPECT_EQ(fake.groups[2][1].share, (WorkLists{30 + 0, 60 + 8, 90 + 12, 384 + 0, 15 + 1}));
+        EXPECT_EQ(slides.results[2].queries, 2U) << "asked once more, and not halved";
+    }
+}
+
+// Nine halvings of every part: the second of three stages leaves none of its 16 boxes proven.
 TEST(StagedProver, ThreeStagesOfAPlanGetAsDeepAsTwoAndDeeperWhereFewBoxesAreOpen) {
     for (const std::uint32_t stages : {2U, 3U}) {
         for (const std::uint32_t halvings : {9U, 10U}) {
@@ -237,16 +317,16 @@ TEST(StagedProver, ThreeStagesOfAPlanGetAsDeepAsTwoAndDeeperWhereFewBoxesAreOpen
         }
         Slides slides;
         ToldEngine fake{.judge = [](const Query& query) {
-            const bool is_end = query.pose.t[0] + query.r_mm - 0.5 > 7.75;
-            return query.r_mm <= (is_end ? 0.501 : 0.8) ? Proof::far : Proof::not_proven;
+            const bool is_end = query.pose.t[0] + query.r_mm - 0.5 > 7.9;
+            return query.r_mm <= (is_end ? 0.501 : 1.01) ? Proof::far : Proof::not_proven;
         }};
         slides.prove(fake, plan_of(stages, 1, 512, kAmple));
         EXPECT_EQ(slides.results[0].proof == JointBoxProof::proven, stages == 3);
-        EXPECT_EQ(fake.queries(), stages == 3 ? 1U + 32U + 512U : 1U + 512U);
+        EXPECT_EQ(fake.queries(), stages == 3 ? 2U + 4U + 8U + 16U + 2U + 512U : 1U + 512U);
     }
 }
 
-TEST(StagedProver, AStageTooSmallForALevelOfAllTreesIsLeftOut) {
+TEST(StagedProver, ARoundThatIsTooLargeForTheQueriesIsLeftOut) {
     for (const std::uint32_t count : {16U, 17U}) {  // 32 queries are two for each of sixteen
         Slides slides(count);
         ToldEngine fake = far_to(0.501 + 0.5);  // four halvings
@@ -254,7 +334,7 @@ TEST(StagedProver, AStageTooSmallForALevelOfAllTreesIsLeftOut) {
         for (const JointBoxResult& result : slides.results) {
             EXPECT_EQ(result.proof, JointBoxProof::proven);
         }
-        EXPECT_EQ(slides.work.stages, count == 16 ? 3U : 2U);
+        EXPECT_EQ(fake.calls.size(), count == 16 ? 4U : 3U);
         EXPECT_EQ(fake.calls.back().size(), count == 16 ? 512U : 17U * 16U);
     }
 }
@@ -266,7 +346,7 @@ TEST(StagedProver, DepthIsThatOfAllStagesTogether) {
     ToldEngine fake = far_to(1.6);
     slides.prove(fake, plan);
     EXPECT_EQ(slides.results[0].proof, JointBoxProof::budget_spent);
-    EXPECT_EQ(fake.queries(), 5U);
+    EXPECT_EQ(fake.queries(), 2U + 4U);
     plan.depth_max = 3;
     slides.prove(fake, plan);
     EXPECT_EQ(slides.results[0].proof, JointBoxProof::proven);
@@ -337,18 +417,40 @@ TEST(StagedProver, ASpentGroupBeginsTheNextStageWithWhatItHad) {
         Slides slides(2);
         ToldEngine fake = far_to(1.6);
         fake.prefers_batches = prefers_batches;
-        fake.spoil = spend_in(1);
-        slides.prove(fake, Slides::plan(3, TreeForm::leaves, 16));
+        fake.spoil = spend_in(2);
+        CyclePlan plan = Slides::plan(3, TreeForm::leaves, 16);
+        plan.queries[2] = 64;
+        slides.prove(fake, plan);
         EXPECT_EQ(slides.results[0].proof, JointBoxProof::proven) << "with a share of its own";
+        EXPECT_EQ(slides.results[1].proof, JointBoxProof::proven);
         EXPECT_EQ(slides.work.stages, 3U);
-        ASSERT_EQ(fake.calls.size(), 3U);
-        EXPECT_EQ(fake.calls[2].size(), 16U) << "one tree, from its root";
+        ASSERT_EQ(fake.calls.size(), 5U) << "whole, once more, two rounds, the last stage";
+        EXPECT_EQ(fake.calls[4].size(), 8U + 4U * 8U) << "from its root, and from four parts";
     }
+}
+
+// A round that is lost is the one that the share did not hold: what the one before it proved stays
+// proven.
+TEST(StagedProver, AShareThatIsSpentLosesOneRound) {
+    Slides slides;
+    ToldEngine fake{.judge = [](const Query& query) {
+        const bool is_far = query.pose.t[0] < 3 ? query.r_mm < 8 : query.r_mm <= 1.1;
+        return is_far ? Proof::far : Proof::not_proven;
+    }};
+    fake.spoil = spend_in(3);
+    CyclePlan plan = Slides::plan(3, TreeForm::leaves, 16);
+    plan.queries[2] = 8;
+    slides.prove(fake, plan);
+    EXPECT_EQ(slides.results[0].proof, JointBoxProof::proven);
+    ASSERT_EQ(fake.calls.size(), 5U) << "whole, once more, two rounds, the last stage";
+    EXPECT_EQ(fake.calls[3].size(), 2U);
+    EXPECT_EQ(fake.calls[4].size(), 8U) << "the other parts are proven";
 }
 
 TEST(StagedProver, AnEngineThatIsLostAnywhereProvesNothingInThatCycle) {
     for (const QueryStatus status : {QueryStatus::not_run, QueryStatus::bad_rounding}) {
-        for (const std::uint32_t lost_call : {0U, 1U}) {
+        for (const auto& [stages, lost_call] :
+             {std::pair{2U, 0U}, {2U, 1U}, {3U, 0U}, {3U, 1U}, {3U, 2U}}) {
             Slides slides(2);
             ToldEngine fake{.judge =
                                 [](const Query& query) {
@@ -358,13 +460,14 @@ TEST(StagedProver, AnEngineThatIsLostAnywhereProvesNothingInThatCycle) {
                                 },
                             .prefers_batches = true};
             // One answer, and below a parent that is far.
-            fake.spoil = [&](std::uint32_t call, std::span<const Query>,
-                             std::span<QueryResult> results, std::span<GroupWork>) {
-                if (call == lost_call) {
+            fake.spoil = [&, lost = lost_call](std::uint32_t call, std::span<const Query>,
+                                               std::span<QueryResult> results,
+                                               std::span<GroupWork>) {
+                if (call == lost) {
                     results[results.size() - 3] = {.status = status};
                 }
             };
-            slides.prove(fake, Slides::plan(2, TreeForm::whole, 14), kKnownAnswerMesh);
+            slides.prove(fake, Slides::plan(stages, TreeForm::whole, 14), kKnownAnswerMesh);
             for (const JointBoxResult& result : slides.results) {
                 EXPECT_EQ(result.proof, JointBoxProof::engine_failed);
                 EXPECT_EQ(result.status, status);

@@ -341,8 +341,8 @@ TEST(CycleWork, EachStageHasThePartsOfItsOwn) {
     EXPECT_EQ(two.lists[0], (WorkLists{10, 20, 100, 200, 2}));
     EXPECT_EQ(two.lists[1], (WorkLists{150, 300, 1500, 3000, 30}));
     EXPECT_EQ(three.lists[0], two.lists[0]);
-    EXPECT_EQ(three.lists[1], (WorkLists{30, 240, 300, 2400, 24}));
-    EXPECT_EQ(three.lists[2], (WorkLists{120, 60, 1200, 600, 6}));
+    EXPECT_EQ(three.lists[1], (WorkLists{30, 240, 300, 2800, 24}));
+    EXPECT_EQ(three.lists[2], (WorkLists{120, 60, 1200, 200, 6}));
     EXPECT_EQ(two.queries, (std::array<std::uint32_t, 3>{24, 512, 0}));
     EXPECT_EQ(three.queries, (std::array<std::uint32_t, 3>{24, 32, 512}));
 }

@@ -46,7 +46,7 @@ TEST_F(ChoosePlan, OneStepHasTheListsOfTheMachineFile) {
     }
     EXPECT_EQ(format_plan_key(at(0)),
               "cycle: {stages: 3, queries: 512, lists: {node_pairs: 64, leaf_pairs: 50, box_rows: "
-              "768, triangle_pairs: 512, rechecks: 0}}");
+              "821, triangle_pairs: 513, rechecks: 0}}");
     loaded.machine.cycle.queries = 64;
     EXPECT_EQ(at(0).queries[2], 64U);
 }
