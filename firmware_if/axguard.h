@@ -124,7 +124,7 @@ typedef struct axg_sample {
     double position[AXG_AXES_MAX];  // mm or degrees, in the order of the machine file
 } axg_sample;
 
-// What the guard found for the newest sample that it evaluated.
+// Result of the guard for the newest sample that it evaluated.
 typedef struct axg_proof {
     uint64_t samples_evaluated;  // 0: none yet, and nothing else is set
     const char*
@@ -138,7 +138,7 @@ typedef struct axg_proof {
     uint8_t cap;      // 1/250 of rapid; 250: none
     uint8_t reserved[7];
     double clearance_mm;  // proven lower bound of the distance of `pair`; -1: unknown
-    double needed_mm;     // the distance that `pair` has to keep in a stop; -1: no pair
+    double needed_mm;     // distance that `pair` needs in a stop; -1: no pair
 } axg_proof;
 
 // Texts are static; docs/reference/states.md, docs/reference/commands.md and
@@ -173,7 +173,7 @@ typedef struct axg_axis {
     double jog_speed, jog_acceleration;  // 0: guard.single_jog is not stated
 } axg_axis;
 
-// What a board has to know of the machine file; the names are those of axg_board_options.
+// Values of the machine file that a board needs; the names are those of axg_board_options.
 typedef struct axg_terms {
     uint32_t period_us, jitter_us, reaction_us;  // jitter_us: and most of can.latched_age_us
     uint32_t permit_id, stop_id;
@@ -191,7 +191,7 @@ typedef struct axg_terms {
 
 typedef struct axg_guard axg_guard;
 
-// Reads machine file and meshes, creates the engine, and reserves all memory. Takes seconds with a
+// Reads machine file and meshes, creates the engine, and reserves all memory. Needs seconds with a
 // GPU. `text` receives the faults and the next step, truncated to `text_bytes`; it may be null. On
 // AXG_STATUS_OK the caller destroys *out with axg_guard_destroy; otherwise *out is null.
 AXG_API axg_status axg_guard_create(const axg_options* options, axg_guard** out, char* text,
@@ -219,11 +219,11 @@ AXG_API axg_status axg_guard_put_sample(axg_guard* guard, const axg_sample* samp
 AXG_API axg_status axg_guard_encode_sample(axg_guard* guard, const axg_sample* sample,
                                            axg_frame out[], uint32_t capacity, uint32_t* count);
 
-// Does all work due at now_us except geometry; takes microseconds. now_us must not decrease. A
+// Does all work due at now_us except geometry; needs microseconds. now_us must not decrease. A
 // result of axg_guard_evaluate counts as received at the start of the next axg_guard_process.
 AXG_API axg_status axg_guard_process(axg_guard* guard, int64_t now_us, axg_state* out);
 
-// Evaluates the geometry of the newest sample: takes one cycle of the engine. One separate thread
+// Evaluates the geometry of the newest sample: costs one cycle of the engine. One separate thread
 // may call it concurrently with all calls except start and destroy. With clearance levels, it
 // queries those after the result is available: axg_guard_process in another thread does not wait
 // for them.

@@ -18,7 +18,7 @@ constexpr std::size_t kNameBytesMax = 128;
 constexpr std::uint32_t kExtendedFlag = 0x80000000U;
 constexpr std::uint32_t kNoMessage = 0xC0000000U;  // VECTOR__INDEPENDENT_SIG_MSG: of no message
 constexpr std::uint32_t kFrameFormatFd = 14, kFrameFormatExtendedFd = 15;  // of VFrameFormat
-// What may begin a section; a list of names without an end sign ends before one of these.
+// Words that begin a section. A list of names without an end sign ends before one of them.
 constexpr std::string_view kSections =
     " VERSION NS_ BS_ BU_ BO_ SG_ BO_TX_BU_ EV_ CM_ BA_DEF_ BA_DEF_DEF_ BA_ VAL_ VAL_TABLE_ "
     "SIG_GROUP_ SIG_VALTYPE_ SG_MUL_VAL_ SIG_TYPE_REF_ ENVVAR_DATA_ EV_DATA_ BA_DEF_REL_ BA_REL_ "
@@ -64,7 +64,7 @@ class DbcParser {
   private:
     void advance() noexcept { now_ = next_dbc_token(rest_, line_); }
 
-    /// The first thing that cannot be read is the last one that is looked at.
+    /// Reports what was found instead of `wanted`, and ends the parse.
     bool fail(std::string wanted) {
         const std::string got = now_.kind == DbcToken::Kind::end ? "the end of the file"
                                 : now_.kind == DbcToken::Kind::broken && now_.text == "\""
@@ -298,7 +298,7 @@ bool DbcParser::read_signal(DbcMessage& message) {
     return true;
 }
 
-/// Nothing, M, m5, or m5M, which chooses in its turn: extended multiplexing.
+/// Reads an optional M, m5 or m5M. m5M (extended multiplexing) is refused: selected and selector.
 bool DbcParser::read_turn(DbcSignal& signal) {
     if (now_.kind != DbcToken::Kind::word) {
         return true;
@@ -364,7 +364,7 @@ bool DbcParser::read_value_type() {
     return true;
 }
 
-/// SG_MUL_VAL_ and SIG_TYPE_REF_ restate what a signal is: the message is not used.
+/// SG_MUL_VAL_ and SIG_TYPE_REF_ redefine a signal: the signals of the message are refused.
 bool DbcParser::read_turn_list() {
     const int line = now_.line;
     advance();
@@ -377,7 +377,7 @@ bool DbcParser::read_turn_list() {
     return is_sound_;
 }
 
-/// One attribute tells CAN FD from classical frames; the others are read over.
+/// Reads the attribute VFrameFormat (CAN FD or classical frames) and skips the others.
 bool DbcParser::read_attribute() {
     advance();
     const bool is_format = now_.kind == DbcToken::Kind::text && now_.text == "VFrameFormat";
@@ -457,7 +457,7 @@ void DbcParser::apply_remarks() {
     }
 }
 
-/// Exactly one selector where signals take turns.
+/// A message with multiplexed signals needs exactly one selector.
 void DbcParser::check_turns(DbcMessage& message) {
     std::size_t selectors = 0;
     std::size_t selected = 0;

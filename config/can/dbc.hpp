@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads a DBC file: which message carries which signal, in which bits. What would change the
-// meaning of a signal and is not known here is kept as a reason not to use it.
+// Reads a DBC file: which message carries which signal, in which bits. A signal whose meaning
+// depends on an unsupported statement is stored with a reason not to use it.
 // Source: the format as Vector's "DBC File Format Documentation" 1.0.5 describes it.
 #pragma once
 
@@ -21,8 +21,8 @@ inline constexpr std::size_t kDbcSignalsMax = 50'000;  // of all messages
 struct DbcSignal {
     enum class Turn : std::uint8_t {
         every,     // in every frame of the message
-        selector,  // M: says whose turn it is
-        selected   // m5: in frames in which the selector says 5
+        selector,  // M: its value selects the signals in a frame
+        selected   // m5: only in frames whose selector is 5
     };
     std::string name;
     int line = 0;
@@ -43,8 +43,7 @@ struct DbcMessage {
     int line = 0;
     std::uint32_t id = 0;
     bool is_extended = false;
-    bool is_flexible =
-        false;  // the file says CAN FD (attribute VFrameFormat), or more than 8 bytes
+    bool is_flexible = false;  // CAN FD by the attribute VFrameFormat, or more than 8 bytes
     std::uint32_t length_bytes = 0;
     std::vector<DbcSignal> signals;
 };
@@ -53,8 +52,8 @@ struct Dbc {
     std::vector<DbcMessage> messages;
 };
 
-/// Either no faults, or what is wrong and `out` is untouched: the first thing that cannot be read,
-/// or all names and numbers that contradict each other. Takes time in proportion to the text.
+/// Returns no faults, or leaves `out` untouched and returns the faults: the first syntax error, or
+/// all names and numbers that contradict each other. Time: proportional to the text.
 /// @param file  the name shown in faults
 [[nodiscard]] std::vector<ConfigFault> parse_dbc(std::string_view text, const std::string& file,
                                                  Dbc& out);

@@ -16,7 +16,7 @@ constexpr bool is_word(char c) noexcept {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || is_digit(c);
 }
 
-/// A number ends where its letters end: 1e-3, 0.5, -12, 0x is none of them and the reader says so.
+/// Length of a number with all letters that follow: 1e-3, 0.5, -12. The parser rejects 0x.
 std::size_t number_length(std::string_view text) noexcept {
     std::size_t at = text[0] == '-' || text[0] == '+' ? 1 : 0;
     for (; at < text.size(); ++at) {

@@ -17,9 +17,9 @@ struct DbcToken {
     }
 };
 
-/// The token at the start of `rest`, which moves behind it; `line` counts line ends. Numbers keep
-/// their sign where a digit follows. broken: a text without an end, or a byte that belongs to
-/// nothing.
+/// Returns the token at the start of `rest` and removes it from there; `line` counts line ends. A
+/// sign before a digit is part of the number. broken: a text without its closing quotation mark, or
+/// a byte of no token.
 [[nodiscard]] DbcToken next_dbc_token(std::string_view& rest, int& line) noexcept;
 
 }  // namespace axg

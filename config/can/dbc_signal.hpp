@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a signal of a DBC file to what the receiver reads.
+// Converts a signal of a DBC file to a signal of the receiver.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +11,8 @@
 
 namespace axg {
 
-/// The signal in the unit of its file, as a position. Returns why it cannot be used, in words that
-/// follow "a signal of": empty where it can.
+/// Converts the signal to a position in the unit of its file. Returns why it cannot be used, as a
+/// text that follows "a signal of"; empty: it can be used.
 [[nodiscard]] std::string to_can_signal(const DbcMessage& message, const DbcSignal& signal,
                                         CanSignal& out);
 

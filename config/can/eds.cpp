@@ -205,7 +205,7 @@ std::string hex(std::uint32_t value) {
     return buffer.data();
 }
 
-/// Only so many entries are active as subindex 0 says, however many stand in the file.
+/// Reads only the active entries: subindex 0 is their number, and the file may contain more.
 bool EdsReader::read_map(std::uint32_t index, EdsPdo& pdo) {
     const std::string base = hex(index) + "sub";
     std::uint32_t count = 0;
@@ -230,7 +230,7 @@ bool EdsReader::read_map(std::uint32_t index, EdsPdo& pdo) {
     return true;
 }
 
-/// Only what stands in the file is looked at: 1800sub1 to 19FFsub1.
+/// Reads the transmit PDOs that the file contains: 1800sub1 to 19FFsub1.
 void EdsReader::read_pdos() {
     std::set<std::uint32_t> indices;
     const auto end = entries_.lower_bound("1a00");

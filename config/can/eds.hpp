@@ -20,7 +20,7 @@ inline constexpr std::size_t kEdsEntriesMax = 200'000;
 struct EdsPdo {
     std::uint32_t number = 1;  // TPDO1 is 1
     int line = 0;              // of its COB-ID
-    std::uint32_t cob_id = 0;  // 0x1800 + n, sub 1: bit 31 says off, bit 29 an extended id
+    std::uint32_t cob_id = 0;  // 0x1800 + n, sub 1: bit 31 is off, bit 29 an extended id
     std::uint32_t transmission_type = 0;
     std::vector<std::uint32_t> map;  // index << 16 | subindex << 8 | bits, the active ones
 };
@@ -30,8 +30,8 @@ struct Eds {
     std::vector<EdsPdo> pdos;           // those whose objects are complete
 };
 
-/// ParameterValue (DCF) takes precedence over DefaultValue; $NODEID is `node`.
-/// Either no faults, or what is wrong and `out` is untouched. Takes time in proportion to the text.
+/// ParameterValue (DCF) overrides DefaultValue; $NODEID is `node`. Returns no faults, or leaves
+/// `out` untouched and returns the faults. Time: proportional to the text.
 [[nodiscard]] std::vector<ConfigFault> parse_eds(std::string_view text, const std::string& file,
                                                  std::uint32_t node, Eds& out);
 

@@ -25,7 +25,7 @@ constexpr std::uint32_t kClassicalToolMax = 255;  // one byte of the last frame
 constexpr std::uint32_t kAgePeriodsMax = 10;      // of positions at their latch
 constexpr std::uint32_t kHashesIn = 0x582, kHashesOut = 0x602;
 
-/// Largest position a frame of ours can say: 24 bits of 1 um or 0.0001 degrees, 32 bits of 0.1 um
+/// Largest position in a frame of our formats: 24 bits of 1 um or 0.0001 degrees, 32 bits of 0.1 um
 /// or 0.0001.
 struct FrameReach {
     double mm, deg;
@@ -86,7 +86,7 @@ void read_ids(MapReader& reader, const char* key, WholeRange range, std::size_t 
     }
 }
 
-/// As many as there are drives to be stopped; none without a word.
+/// One identifier for each drive to be stopped [default: none].
 void read_quick_stops(MapReader& reader, FaultList& faults, std::vector<std::uint32_t>& out) {
     constexpr std::string_view kWanted =
         "a list of 1 to 16 identifiers, such as [0x303, 0x304]: a receive PDO of each drive";
@@ -102,7 +102,7 @@ void read_quick_stops(MapReader& reader, FaultList& faults, std::vector<std::uin
     read_ids(reader, "quick_stop", kCanId, list->entries.size(), faults, out);
 }
 
-/// Without a word: the transmit objects of node 1, as many as there are frames.
+/// Default: the transmit objects of node 1, one for each frame.
 void default_axis_ids(MapReader& reader, std::size_t count, CanLayout& can) {
     constexpr std::array<std::uint32_t, 4> kObjects{0x181, 0x281, 0x381, 0x481};
     can.axis_ids.assign(kObjects.begin(), kObjects.begin() + std::min(count, kObjects.size()));
@@ -180,8 +180,8 @@ void read_frame_ids(MapReader& reader, MachineDraft& draft) {
     if (ids != nullptr) {
         read_single_ids(*ids, frames, draft);
     }
-    // Unless said otherwise a frame's Data ID repeats its identifier: distinct, and checked by the
-    // checksum.
+    // Default: the Data ID of a frame equals its identifier. So Data IDs are distinct, and the
+    // checksum covers the identifier.
     can.data_ids.assign(can.axis_ids.begin(), can.axis_ids.end());
     if (!is_native(can) && reader.has("data_ids")) {
         reader.report("data_ids", "data ids with format: " + source_of(draft),
@@ -349,7 +349,7 @@ void read_receiver_rules(MapReader& reader, CanLayout& can) {
                       "at least sample_us, " + std::to_string(can.sample_us) +
                           "; otherwise every snapshot is stale before the next one arrives");
     }
-    // A board whose period is longer than the heartbeat's says both at once.
+    // A board with a period longer than its heartbeat's sends both at once.
     can.heartbeat_timeout_us = std::max(can.heartbeat_timeout_us, 3 * can.sample_us);
     if (reader.whole("heartbeat_timeout_us", Need::optional, {1000, 10'000'000},
                      can.heartbeat_timeout_us) &&
@@ -362,7 +362,7 @@ void read_receiver_rules(MapReader& reader, CanLayout& can) {
     read_small(reader, "counter_delta_max", {1, 13}, can.counter_delta_max);
 }
 
-/// Whether SYNC counts as the contract of a board says.
+/// Whether SYNC counts to 240, as the contract of a board requires.
 bool has_counter(const CanLayout& can) noexcept {
     constexpr std::uint32_t kSyncCounterMax = 240;
     return can.format != CanFormat::signals && can.sync_counter_max == kSyncCounterMax;
@@ -380,7 +380,7 @@ void read_permit_version(MapReader& reader, CanLayout& can) {
     can.permit_version = static_cast<std::uint8_t>(version);
 }
 
-/// Whoever can obey permits can answer hashes, and is asked for them.
+/// A board whose SYNC counts to 240 has to send hashes by default.
 void read_hashes(MapReader& reader, CanLayout& can) {
     constexpr std::array<std::string_view, 2> kHashes{"none", "required"};
     std::size_t choice = has_counter(can) ? 1 : 0;
@@ -391,7 +391,7 @@ void read_hashes(MapReader& reader, CanLayout& can) {
     }
 }
 
-/// Travel that a frame cannot say would arrive as another position.
+/// A position beyond the range of a frame would arrive as another position.
 void check_reach(MapReader& top, MachineDraft& draft) {
     const Machine& machine = draft.machine;
     const bool fd = machine.can.format == CanFormat::fd;
@@ -424,7 +424,7 @@ void check_reach(MapReader& top, MachineDraft& draft) {
     }
 }
 
-/// A DBC file says where signals are; what arrives are signals all the same.
+/// A DBC file only locates the signals: the receiver reads them like those of format: signals.
 CanFormat format_of(CanSource source) noexcept {
     switch (source) {
         case CanSource::classical:

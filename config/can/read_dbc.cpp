@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `format: dbc`: the signals of a DBC file that are the axes, and what the board says besides.
+// `format: dbc`: the signals of a DBC file that carry axes, status bits and counters.
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -31,7 +31,7 @@ constexpr std::array<State, 4> kStates{{{"tool", SignalRole::tool},
                                         {"tool_change", SignalRole::tool_change},
                                         {"homed", SignalRole::homed}}};
 
-/// A signal that the machine file names: what it is in the DBC file, and where it is named.
+/// A signal that the machine file names: its entry in the DBC file, and the line that names it.
 struct Named {
     const DbcMessage* message = nullptr;
     const DbcSignal* signal = nullptr;
@@ -122,8 +122,8 @@ std::optional<Named> DbcReader::find(const YamlNode& node, const std::string& pa
     return named;
 }
 
-/// The unit of the DBC file counts; where it names none that is known, the machine file's. Where
-/// both speak they agree.
+/// Uses the unit of the DBC file, or the machine file's if the DBC file has no supported unit. Two
+/// stated units must agree.
 void DbcReader::read_unit(Named& named, const YamlNode* unit, const Axis& axis) {
     const std::optional<std::size_t> of_file = unit_named(named.signal->unit);
     std::optional<std::size_t> chosen = of_file;
@@ -175,7 +175,7 @@ void DbcReader::check_axis(const Named& named, const Axis& axis) {
         report(named.path, named.line, reach.got + place(named.signal->line), reach.wanted);
         return;
     }
-    // What lies outside the range that the DBC file states the board does not send.
+    // The board sends no value outside the range that the DBC file states.
     const DbcSignal& signal = *named.signal;
     const double unit = named.wire.factor / signal.factor;
     const double to_file = axis.kind == AxisKind::rotary ? 180.0 / kPi : 1.0;
@@ -303,7 +303,7 @@ void DbcReader::read_counters() {
                    "a message that carries an axis, or a state");
             continue;
         }
-        // AUTOSAR profile 1 counts 0..14: the range says so, and without one all bits count.
+        // The range in the DBC file bounds the count (AUTOSAR profile 1: 0..14); else all bits do.
         const double range = signal.maximum / signal.factor;
         const std::uint32_t all = 1U << signal.length_bits;
         const bool has_range = signal.minimum == 0 && range >= 1 && range < all;
@@ -314,8 +314,8 @@ void DbcReader::read_counters() {
     }
 }
 
-/// No two signals share bits unless they are states, and frames of one message take turns or do
-/// not.
+/// Rejects signals that share bits (states may), and a message of which only some of the signals
+/// are multiplexed.
 void DbcReader::check_frames() {
     for (std::size_t i = 0; i < named_.size(); ++i) {
         for (std::size_t j = 0; j < i; ++j) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `format: cia402`: where each drive's process data say its position, and what a count of it is.
+// `format: cia402`: location and scale of each drive's position in its process data.
 // Source: CiA 301 (PDOs, SYNC), CiA 402 (objects 0x6041, 0x6064, 0x606C).
 #include <algorithm>
 #include <array>
@@ -93,8 +93,8 @@ class DriveReader {
     std::uint32_t axis_index_;
 };
 
-/// An endless axis whose counter overflows between two marks of the turn would be somewhere else
-/// after it, and nobody could tell.
+/// The counter of an endless axis has to overflow at a whole number of turns: otherwise the same
+/// count would mean another angle after it, undetected.
 void DriveReader::check_endless(std::uint32_t counts, std::uint32_t per) {
     double range_counts = 4294967296.0;
     const bool is_stated =
@@ -150,8 +150,8 @@ bool DriveReader::read_scale(CanSignal& position) {
     return true;
 }
 
-/// The status word of CiA 402 does not say whether an axis knows where it is; makers use a bit of
-/// their own, or the encoder keeps its place.
+/// The status word of CiA 402 has no standard bit for a homed axis: makers use a bit of their own,
+/// or the encoder is absolute.
 bool DriveReader::read_homed(std::uint32_t& mask) {
     bool is_absolute = false;
     std::uint32_t bit = 0;

@@ -36,7 +36,7 @@ void read_unit(MapReader& reader, const Axis& axis, CanSignal& signal) {
     signal.offset *= signal_unit(unit).factor;
 }
 
-/// What does not fit into the bits would arrive as another position.
+/// A position beyond the range of the bits would arrive as another position.
 void check_reach(MapReader& reader, const Axis& axis, const CanSignal& signal) {
     const SignalReach reach = reach_of(signal, axis);
     if (!reach.fits) {
@@ -44,7 +44,7 @@ void check_reach(MapReader& reader, const Axis& axis, const CanSignal& signal) {
     }
 }
 
-/// Of 29 bits only where the file writes so: the number of an identifier does not show its kind.
+/// An identifier has 29 bits only with `extended: true`: its number does not show its kind.
 bool read_id(MapReader& reader, CanSignal& signal) {
     bool is_extended = false;
     if (reader.has("extended") && !reader.boolean("extended", Need::optional, is_extended)) {

@@ -30,7 +30,7 @@ void read_dbc(MapReader& can, MachineDraft& draft);
 /// process data are signals. Without format: cia402 these keys are faults.
 void read_drives(MapReader& can, MachineDraft& draft);
 
-/// No signal may come under an identifier that means something else.
+/// Rejects a signal whose identifier another frame uses.
 void check_signal_ids(MapReader& can, const CanLayout& layout, std::span<const NamedId> others);
 
 }  // namespace axg

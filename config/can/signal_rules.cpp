@@ -18,7 +18,7 @@ constexpr std::array<SignalUnit, kSignalUnitNames.size()> kUnits{{{AxisKind::lin
                                                                   {AxisKind::rotary, 180.0 / kPi},
                                                                   {AxisKind::rotary, 360.0}}};
 
-/// Largest number that the bits can say, and the smallest.
+/// The smallest and the largest number that the bits can represent.
 struct RawRange {
     double low, high;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every signal has to keep to, whichever file describes it: units, bits inside the frame, and
-// enough of them for the travel.
+// Rules for every signal, whichever file describes it: units, bits inside the frame, and enough of
+// them for the travel.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ struct SignalUnit {
 /// The names for one kind of axis, as a wish: "deg, rad or turn".
 [[nodiscard]] std::string units_of(AxisKind kind);
 
-/// The bits a signal covers, numbered as in CanSignal. False when one lies outside the frame.
+/// The bits a signal covers, numbered as in CanSignal. False when one is outside the frame.
 [[nodiscard]] bool covered_bits(const CanSignal& signal, std::uint32_t frame_bits, FrameBits& out);
 
 /// Whether the bits of a signal, in mm or degrees, can represent every position of the travel.

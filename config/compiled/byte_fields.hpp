@@ -49,9 +49,9 @@ class ByteReader {
   public:
     explicit ByteReader(std::string_view bytes) noexcept : rest_(bytes) {}
 
-    /// All there so far; once false it stays so, and what is read is zero or empty.
+    /// False after a read beyond the end; from then on every read returns zero or an empty value.
     [[nodiscard]] bool ok() const noexcept { return ok_; }
-    /// And nothing is left.
+    /// ok(), and every byte has been read.
     [[nodiscard]] bool is_at_end() const noexcept { return ok_ && rest_.empty(); }
 
     template <class T>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A machine in one file, with everything about it that takes long to find: surfaces checked and
+// A machine in one file, with everything about it that is slow to compute: surfaces checked and
 // simplified, the grouping of their trees, their connected parts, the hashes
 // (docs/reference/compiled.md). mm.
 #pragma once
@@ -29,9 +29,8 @@ struct CompiledMachine {
 [[nodiscard]] std::string compile_machine(const CompiledMachine& compiled);
 
 /// Reads such bytes; `file` is the name in messages. Either no faults, or one and `out` is
-/// untouched. Hostile bytes are refused: every length is checked before memory is taken for it,
-/// and what engines follow without looking is sound. That the contents are what was compiled the
-/// sums tell, against accidents, not against forgery.
+/// untouched. Refuses hostile bytes: checks every length before it reserves memory, and every index
+/// that engines use unchecked. The sums detect accidental changes of the contents, not forgery.
 [[nodiscard]] std::vector<ConfigFault> parse_compiled(std::string_view bytes,
                                                       const std::string& file, CompiledMachine& out,
                                                       Sums sums = Sums::checked);

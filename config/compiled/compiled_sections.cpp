@@ -15,7 +15,7 @@
 namespace axg {
 namespace {
 
-/// As PNG's: the first byte is no ASCII, and a copy that takes the file for text harms the rest.
+/// Like PNG's: the first byte is not ASCII, and a transfer in text mode changes the others.
 constexpr std::string_view kMagic{
     "\x89"
     "AXG\r\n\x1a\n",

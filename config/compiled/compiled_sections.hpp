@@ -13,7 +13,7 @@ namespace axg {
 
 /// Raised with any change of the bytes or of what they mean.
 inline constexpr std::uint32_t kCompiledVersion = 6;
-/// Of a tag: TEXT, MESH.
+/// Length of a tag, such as TEXT or MESH.
 inline constexpr std::size_t kTagBytes = 4;
 
 struct CompiledSection {
@@ -31,7 +31,7 @@ struct SectionView {
     std::string_view tag, payload;
     std::size_t at = 0;  // byte of the file at which it begins
 };
-/// What is wrong with a file; got empty: nothing.
+/// A fault of a file; `got` empty: none.
 struct SectionFault {
     std::string section;
     std::size_t at = 0;

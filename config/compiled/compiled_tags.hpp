@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the sections of a compiled machine are called. For whoever writes and reads one.
+// Tags of the sections of a compiled machine, for its writer and its reader.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@ namespace axg::compiled {
 
 inline constexpr std::string_view kText = "TEXT";    // the machine file
 inline constexpr std::string_view kNamed = "FILE";   // a file that it names
-inline constexpr std::string_view kHashes = "HASH";  // what both come to
+inline constexpr std::string_view kHashes = "HASH";  // effective text, hashes
 inline constexpr std::string_view kNotes = "NOTE";   // oddities of surfaces, allowed by name
 inline constexpr std::string_view kMesh = "MESH";    // one surface
 

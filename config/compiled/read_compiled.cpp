@@ -23,8 +23,7 @@ namespace {
 
 constexpr std::size_t kCompiledBytesMax = std::size_t{1} << 30U;
 
-/// Reads one section after the other into `out`. What is wrong with one is returned; empty:
-/// nothing.
+/// Reads one section after the other into `out`. Returns the fault of a section; empty: none.
 class SectionReader {
   public:
     explicit SectionReader(CompiledMachine& out) noexcept : out_(out) {}
@@ -48,7 +47,7 @@ class SectionReader {
         return section.tag == compiled::kMesh ? read_mesh(section.payload) : "an unknown section";
     }
 
-    /// After the last one: whatever the machine has a surface for is there.
+    /// After the last section: checks that every surface of the machine is there.
     [[nodiscard]] std::string check_whole() const {
         if (!is_parsed_) {
             return "no machine file";
@@ -72,8 +71,8 @@ class SectionReader {
         return has_all ? "" : "a missing surface of a pair";
     }
 
-    /// Sums can be written anew over other surfaces: the hash that board and guard compare has to
-    /// be that of what is here.
+    /// Sums can be recomputed over other surfaces: the hash that board and guard compare has to
+    /// match the surfaces that were read.
     [[nodiscard]] const char* check_hashes() const {
         const bool is_same = configuration_hash(out_.machine, out_.meshes) == whole_hash_ &&
                              configuration_hashes(out_.machine, out_.meshes).of == part_hashes_.of;
@@ -108,7 +107,7 @@ class SectionReader {
         return !in.is_at_end() ? kBadLengths : !is_new || is_parsed_ ? kBadOrder : "";
     }
 
-    /// The words are read here, and have to come to what they came to when they were compiled.
+    /// Parses the machine file; its effective text has to equal that of the compiling axguard.
     std::string read_hashes(std::string_view payload) {
         ByteReader in(payload);
         MachineMeshes& meshes = out_.meshes;
@@ -190,7 +189,7 @@ class SectionReader {
                    (own.tool < machine.tools.size() ||
                     (own.tool == kNoIndex && !machine.bodies[own.body].is_tool));
         };
-        // What is left of surfaces stands behind those that pairs have: parts behind their wholes.
+        // Pruned surfaces follow the pair surfaces that they are parts of: none has a lower index.
         std::uint32_t own_last = 0;
         for (const PairSurface& own : machine.pair_surfaces) {
             own_last = std::max(own_last, own.surface);

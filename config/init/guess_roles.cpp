@@ -55,7 +55,7 @@ char role_of(const std::string& stem) {
     return '\0';
 }
 
-/// Where a role stands in the chains: the fixed parts, the table's side from the bottom up, the
+/// Position of a role in the chains: the fixed parts, the table's side from the bottom up, the
 /// head's side.
 int rank_of(char role) noexcept {
     constexpr std::string_view kOrder = "FYXABCZT";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Roles of the parts of a machine, guessed from the names of their files. Guesses, marked as such
-// wherever they end up: they save typing, they are no knowledge.
+// Guesses the roles of the parts of a machine from the names of their files, to save typing. Every
+// output marks them as guesses.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ struct RoleGuess {
 };
 
 /// One guess a file, parents first. Table side: Y carries X carries A, B, C. Head side: Z carries
-/// the tool. When no name says what moves, the first file moves along X: some axis there must be.
+/// the tool. If no name contains an axis, the first file moves along X: a machine needs one axis.
 [[nodiscard]] std::vector<RoleGuess> guess_roles(const std::vector<std::string>& files);
 
 /// The name of a body: `stem` with what is not legal replaced, and unlike the others.

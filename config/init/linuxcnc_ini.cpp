@@ -25,8 +25,8 @@ constexpr double kPeriodNsMin = 50e3, kPeriodNsMax = 100e6;  // what can.sample_
 constexpr std::uint32_t kIncludesMax = 64;  // an include that includes itself ends here
 constexpr std::size_t kIncludeBytesMax = 1U << 20U;
 
-/// Kinematics whose joints are slides and turntables, with the letters of the joints that LinuxCNC
-/// takes without `coordinates=`. Only trivkins' axes are its joints.
+/// Kinematics whose joints are slides and turntables, with the default letters of their joints
+/// (without `coordinates=`). Only with trivkins are the axes the joints.
 struct Kinematics {
     std::string_view name, letters;
 };
@@ -177,13 +177,13 @@ class Reader {
         return trimmed(text.substr(0, text.find_first_of("#;")));
     }
 
-    /// Of the machine's units in mm and degrees.
+    /// Reads the length of the machine's units in mm and degrees.
     void read_units() {
         constexpr const char* kWanted = "mm or inch";
         const Value* linear = find("TRAJ", "LINEAR_UNITS");
         const std::string unit = linear == nullptr ? "" : upper(without_comment(linear->text));
         const bool is_inch = unit == "INCH" || unit == "IN" || unit == "IMPERIAL";
-        const double per_mm = number_of(unit).value_or(0);  // LinuxCNC also takes units in a mm
+        const double per_mm = number_of(unit).value_or(0);  // LinuxCNC also accepts units in a mm
         if (unit == "MM" || unit == "METRIC") {
             linear_ = 1;
         } else if (is_inch) {
@@ -239,7 +239,7 @@ class Reader {
         }
     }
 
-    /// Of the thread in which motion and samples run.
+    /// Reads the period of the thread that moves the axes and sends the samples.
     void read_period() {
         const Value* value = find("EMCMOT", "SERVO_PERIOD");
         if (value == nullptr) {

@@ -14,7 +14,7 @@
 namespace axg {
 
 /// One axis, from its joints and, where joints and axes are the same (trivkins), from [AXIS_L]: of
-/// several limits the tightest. Nothing stated, nothing here.
+/// several limits the tightest. A value that the file does not state is empty.
 struct IniAxis {
     char letter = 'X';
     bool is_rotary = false;     // A B C
@@ -28,7 +28,7 @@ struct IniAxis {
 struct IniAxes {
     std::vector<IniAxis> axes;                    // in the order of COORDINATES, each letter once
     std::optional<std::int64_t> servo_period_ns;  // [EMCMOT] SERVO_PERIOD
-    std::vector<std::string> faults;  // "machine.ini:12: [AXIS_X] MAX_LIMIT: got ..., wanted ..."
+    std::vector<std::string> faults;              // "machine.ini:12: [AXIS_X] MAX_LIMIT: ..."
 };
 
 /// @param name      of the file, for messages

@@ -98,7 +98,7 @@ std::string mesh_of(const SurveyedMesh& mesh) {
     return text + '}';
 }
 
-/// What an encoder is off, and a board that reports what its encoders measure.
+/// Guessed errors: of an encoder, and 0 for a board that reports measured positions.
 const char* errors_text(bool is_rotary) noexcept {
     return is_rotary ? "position_error_deg: 0.0005, following_error_deg: 0"
                      : "position_error_mm: 0.001, following_error_mm: 0";
@@ -113,7 +113,7 @@ constexpr const char* kOverIniHead =
 # cannot do that, halve the values of the INI file instead.
 )";
 
-/// Travel, speed and acceleration from the control's INI file. It knows no stop but the one at full
+/// Travel, speed and acceleration from the control's INI file. The file states no stop, only full
 /// acceleration; without MAX_JERK, LinuxCNC limits no jerk.
 std::string known_axis_text(const IniAxis& axis) {
     const char* const unit = axis.is_rotary ? "deg" : "mm";
@@ -237,7 +237,7 @@ std::string tools_text(const std::vector<SurveyedMesh>& meshes,
         for (const std::string& note : mesh.notes) {
             text += "  # Repair the mesh or accept: " + escaped(note, 400) + '\n';
         }
-        // Drawn below the nose it stays; drawn standing on its tip it is hung by its top.
+        // A tool drawn below the nose is not moved; one drawn upwards is hung by its top.
         const bool hangs = mesh.min_mm.z < 0;
         const double top_mm = hangs ? 0 : mesh.max_mm.z;
         text += fmt::format("  - number: 1  {}\n    length_mm: {:.6g}  {}: spindle nose to tip\n",
@@ -249,8 +249,8 @@ std::string tools_text(const std::vector<SurveyedMesh>& meshes,
     return text.empty() ? kNoTools : text;
 }
 
-/// The bodies that a moving joint lies between: the first one up each chain that moves, or the
-/// frame.
+/// The nearest body up the chain, itself included, that an axis moves; kNoParent: the frame carries
+/// it.
 std::uint32_t mover_of(const std::vector<RoleGuess>& roles, std::uint32_t body) noexcept {
     while (body != kNoParent && roles[body].axis == '\0') {
         body = roles[body].parent;
@@ -305,7 +305,7 @@ std::string pairs_text(const std::vector<RoleGuess>& roles) {
     return text;
 }
 
-/// Whole microseconds; what is left takes its part of the 1 % that every proof allows the period.
+/// Rounds to microseconds; the rest uses part of the 1 % that every proof allows the period.
 std::string period_text(std::int64_t period_ns) {
     if (period_ns == 0) {
         return {};

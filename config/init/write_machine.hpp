@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A first machine file for a folder of meshes: it loads at once, and says line by line what is only
-// guessed.
+// Writes a first machine file for a folder of meshes: it loads at once and marks each guessed line.
 #pragma once
 
 #include <string>
@@ -12,15 +11,15 @@
 
 namespace axg {
 
-/// Stands in every line that a person still has to confirm; `axguard check` lists those lines.
+/// Marks every line that a person still has to confirm; `axguard check` lists these lines.
 inline constexpr const char* kGuessMark = "# GUESS";
 /// Prefix of the placeholder reasons of exclusions.
 inline constexpr const char* kReviewMark = "REVIEW:";
 
-/// @param meshes  without faults, file names as they shall stand in the file
+/// @param meshes  without faults, file names as the machine file shall contain them
 /// @param roles   of exactly these meshes
-/// @param known   what is known of axes; the rest is guessed. Axes that no body has are named alone
-/// @param period_ns  of the board; 0: not known, can.sample_us is left at its default
+/// @param known   limits of axes; others are guessed. Axes that no body has are listed too
+/// @param period_ns  of the board; 0: not stated, the file leaves can.sample_us at its default
 /// @return        commented YAML; parse_machine() accepts it (two surfaces at least)
 [[nodiscard]] std::string machine_file_text(const std::string& name,
                                             const std::vector<SurveyedMesh>& meshes,

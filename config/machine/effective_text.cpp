@@ -239,7 +239,7 @@ void add_guard(Lines& lines, const GuardRules& guard) {
     lines.add("guard.jog.acceleration_rad_s2", {guard.jog.acceleration_rad_s2});
 }
 
-/// Where it is not pinned, the lists are the program's and not the machine's.
+/// Without a pinned cycle the program chooses stages and lists: they are no part of the machine.
 void add_cycle(Lines& lines, const CycleRules& cycle) {
     lines.add("cycle.is_pinned", cycle.is_pinned ? 1U : 0U);
     lines.add("cycle.depth_max", cycle.depth_max);

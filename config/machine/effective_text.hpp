@@ -14,7 +14,7 @@ namespace axg {
 struct MachineMeshes;
 
 /// One `key = value` a line, in a fixed order, numbers in the shortest form that reads back to the
-/// same bits. Leaves out where things came from: file names and line numbers.
+/// same bits. Leaves out file names and line numbers.
 [[nodiscard]] std::string effective_text(const Machine& machine);
 
 /// The first four bytes of a SHA-256, most significant first, over each part's lines of

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The only header that leads to YAML. Reads a machine file into plain data, or says everything that
-// is wrong with it.
+// The only header that leads to YAML. Reads a machine file into plain data, or returns all of its
+// faults.
 #pragma once
 
 #include <string>

@@ -21,8 +21,8 @@ constexpr Range kSpeedDegS{0.001, 1e5};
 constexpr Range kRate{0.001, 1e6};  // acceleration and deceleration
 constexpr Range kJerk{0.001, 1e9};
 constexpr Range kErrorMm{0, 100}, kErrorDeg{0, 10};
-// Without a word: an encoder's error from one sample to the next, and a board that reports what its
-// encoders measure.
+// Defaults: an encoder's error from one sample to the next, and a board that reports measured
+// positions.
 constexpr double kPositionErrorMm = 0.001, kPositionErrorDeg = 0.0005;
 
 /// The letter that a program and a trace call the axis by; lower case would be another axis to some
@@ -193,7 +193,7 @@ void read_rotary(const YamlNode& node, const std::string& path, FaultList& fault
     axis.jerk_max = has_jerk_limit(axis) ? axis.jerk_max * kPi / 180.0 : kNoJerkLimit;
 }
 
-/// An axis without a kind that we know: keys of both kinds are let pass, the kind is reported.
+/// Reports a missing or invalid kind of an axis; keys of both kinds are allowed.
 void report_kind(const YamlNode& node, const std::string& path, FaultList& faults) {
     constexpr std::array<std::string_view, 2> kKinds{"linear", "rotary"};
     MapReader reader{

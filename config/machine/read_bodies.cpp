@@ -30,8 +30,8 @@ void read_direction(MapReader& reader, Joint& joint) {
     joint.direction = {d[0] / length, d[1] / length, d[2] / length};
 }
 
-/// Without an axis there is nothing for direction and pivot to say; on a linear axis a pivot is a
-/// misunderstanding.
+/// Without an axis, direction and pivot have no meaning and are faults; so is a pivot on a linear
+/// axis.
 void read_joint(MapReader& reader, MachineDraft& draft, Joint& joint) {
     std::string name;
     if (!reader.has("axis")) {

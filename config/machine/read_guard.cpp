@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The sections `guard` and `output_line` of a machine file: what the board promises about motion
-// and stops, what a cycle may spend on proving that a stop ends clear, and the wire beside the bus.
+// and stops, the budget of a cycle for proving that a stop ends clear, and the GPIO line.
 #include <array>
 
 #include "config/machine/read_sections.hpp"
@@ -37,7 +37,7 @@ void read_promise(MapReader& reader, Machine& machine) {
     }
 }
 
-/// What a board does in a jog it must say, and the frames of others have no place for it.
+/// The limits of a jog are all required. Only our frame formats name the axis that may move.
 void read_jog(MapReader& guard_reader, MachineDraft& draft) {
     const YamlNode* section = guard_reader.find(
         "single_jog", Need::optional,
@@ -70,7 +70,7 @@ void read_jog(MapReader& guard_reader, MachineDraft& draft) {
     jog.is_promised = true;
 }
 
-/// What an enforced cap needs of the frames: a permit that says it, a sample that acknowledges it.
+/// An enforced cap needs a permit that orders it and a sample that acknowledges it.
 void read_cap(MapReader& reader, MachineDraft& draft) {
     Machine& machine = draft.machine;
     constexpr std::array<std::string_view, 3> kCaps{"none", "all_axes", "per_axis"};
@@ -127,7 +127,7 @@ void read_free_jerk(MapReader& reader, Machine& machine) {
     }
 }
 
-/// Of the plan's keys, for one release.
+/// Reads the older keys of the section `cycle`, for one release: they are in `guard`.
 void read_older_names(MapReader& reader, CycleRules& out) {
     std::uint32_t rounds = 0;
     if (reader.whole("rounds", Need::optional, {1, 32}, rounds)) {

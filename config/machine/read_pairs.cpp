@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sections `pairs` and `exclusions` of a machine file. Every pair of bodies with a surface
-// stands in exactly one of them: a pair that nobody thought of is a fault, not a gap in the guard.
+// The sections `pairs` and `exclusions` of a machine file. Exactly one of them
+// names each pair of bodies with a surface: a forgotten pair is a fault, not a gap in the guard.
 #include <algorithm>
 #include <map>
 #include <utility>
@@ -20,7 +20,7 @@ class PairTable {
   public:
     explicit PairTable(MachineDraft& draft) : draft_(draft) {}
 
-    /// True when the pair may be taken: two bodies with a surface, not yet named on another line.
+    /// True when the pair is valid: two bodies with a surface, not yet named on another line.
     bool take(std::uint32_t a, std::uint32_t b, int line, const std::string& path) {
         const std::string both = name(a) + " and " + name(b);
         if (a == b) {
@@ -151,7 +151,7 @@ void read_exclusion(const YamlEntry& item, const std::string& path, MachineDraft
     }
 }
 
-/// The items of a section; each can stand for many pairs, but never for more than there are.
+/// The items of a section; one item may name many pairs, but the machine has at most kItemsMax.
 const YamlNode* list_of(MapReader& top, const char* key, Need need, MachineDraft& draft) {
     constexpr std::size_t kItemsMax = kBodiesMax * kBodiesMax / 2;
     const YamlNode* section = top.find(key, need, "a list");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a surface comes from and where it sits: the keys that bodies and tools share.
+// Source and position of a surface: the keys that bodies and tools share.
 #include <array>
 #include <cmath>
 

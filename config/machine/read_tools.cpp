@@ -49,8 +49,8 @@ void read_tool_surface(MapReader& reader, const std::string& path, MachineDraft&
     }
 }
 
-/// What turns is found about the axis that it turns about: all of it stands in the frame of the
-/// tool's body.
+/// Places the surface of a turning tool in the frame of the tool's body: the swept profile is
+/// computed about that frame's axis.
 void turn_with_spindle(Tool& tool) {
     tool.mesh.turns = true;
     tool.mesh.at = tool.at;
@@ -61,7 +61,7 @@ void turn_with_spindle(Tool& tool) {
     }
 }
 
-/// Tools are known by their numbers where those can be read.
+/// The path of a tool in messages: its number if it can be read, else its position in the list.
 std::string tool_path(const YamlNode& node, std::size_t index) {
     for (const YamlEntry& entry : node.entries) {
         if (entry.key == "number" && whole_number(entry.value.text)) {
@@ -105,8 +105,8 @@ void read_tool(const YamlEntry& item, std::size_t index, MachineDraft& draft) {
     draft.tool_lines.push_back(item.line);
 }
 
-/// Without a word the first tool listed counts as in the spindle: an empty spindle must be said,
-/// not assumed.
+/// Default: the first tool listed is in the spindle. The file has to state an empty spindle; it is
+/// never assumed.
 void read_first_tool(MapReader& top, MachineDraft& draft) {
     Machine& machine = draft.machine;
     std::uint32_t first = machine.tools.empty() ? 0U : machine.tools.front().number;

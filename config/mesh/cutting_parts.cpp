@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Why nothing but the other sections has to be queried. A tool with cutting sections touches
-// stock as it should, or lies in it, so of the whole tool nothing can be proven there. What must
-// keep the margin is the union of the other sections. Each is a solid with a closed surface: the
-// face between shank and flutes, which is no surface of the whole tool, is one of the shank. So
-// surfaces and insides are those of a body that is the rest of the tool (PairSurface::is_whole):
-// flutes inside the stock are no finding, a shank inside is one.
+// Why queries of a tool and stock need only the sections that do not cut. A cutting section may
+// touch or enter stock, so no query of the whole tool could be proven. Only the union of the other
+// sections needs the margin. Each is a solid with a closed surface: the face between shank and
+// flutes, which is no surface of the whole tool, is one of the shank. So distance and containment
+// queries treat the rest of the tool as a whole body (PairSurface::is_whole): flutes inside the
+// stock are no contact, a shank inside is one.
 #include "config/mesh/cutting_parts.hpp"
 
 #include <algorithm>

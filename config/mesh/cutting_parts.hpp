@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What of a tool is checked against stock: all that does not cut.
+// Selects the part of a tool that is checked against stock: all sections that do not cut.
 #pragma once
 
 #include "config/mesh/load_meshes.hpp"
@@ -9,7 +9,7 @@ namespace axg {
 
 /// Gives each checked pair of the tool and a stock body, for each tool with cutting sections, a
 /// surface of its own: the sections that do not cut, each a closed shell as it is in the whole
-/// tool. To be called once, after load_meshes() has found no fault.
+/// tool. Call it once, after load_meshes() has found no fault.
 void part_cutters(Machine& machine, MachineMeshes& meshes);
 
 }  // namespace axg

@@ -38,7 +38,7 @@ std::string sha256_hex(const std::vector<std::byte>& bytes) {
     return hex;
 }
 
-/// Where one surface comes from, for its messages, and where its faults go.
+/// The source of one surface, for its messages, and the lists for its faults and notes.
 struct Place {
     std::string key;   // bodies.a.mesh
     std::string name;  // a
@@ -66,7 +66,7 @@ bool read_file(const Place& place, const std::string& mesh_root, std::vector<Tri
         std::transform(wanted.begin(), wanted.end(), wanted.begin(), [](char c) {
             return c >= 'A' && c <= 'F' ? static_cast<char>(c - 'A' + 'a') : c;
         });
-        if (got != wanted) {  // another file: what else is wrong with it is not the question
+        if (got != wanted) {  // another file: report no further faults of it
             place.refuse(
                 "sha256", got + " of " + printable(source.file),
                 printable(wanted) + "; restore the file, or state the hash of the new one");
@@ -104,7 +104,7 @@ void check_size(const Place& place, const MeshReport& report) {
     }
 }
 
-// Of one surface: each is checked as a mesh is.
+// A limit of all shapes of one surface; each shape is checked like a mesh.
 constexpr std::size_t kShapeTrianglesMax = 1U << 20;
 
 bool is_in_range(const Vec3f& corner) noexcept {
@@ -119,7 +119,7 @@ bool are_in_range(const std::vector<Triangle>& triangles) noexcept {
     });
 }
 
-/// What is wrong with a shape where it stands; nothing wanted: nothing.
+/// Checks a shape at its position. Returns its fault; `wanted` empty: none.
 MeshFault judge_shape(const std::vector<Triangle>& triangles, std::size_t before) {
     if (before + triangles.size() > kShapeTrianglesMax) {
         return {fmt::format("{} triangles, preceding shapes included", before + triangles.size()),
@@ -137,7 +137,7 @@ MeshFault judge_shape(const std::vector<Triangle>& triangles, std::size_t before
                                       "origin; its vertices are rounded to float32"};
 }
 
-/// One closed shell after the other: how they lie to each other is nobody's fault.
+/// Appends one closed shell for each shape. Shells may overlap or contain each other.
 void build_shapes(const Place& place, std::vector<Triangle>& out) {
     for (const Shape& shape : place.source.shapes) {
         const RevolutionResult built = triangles_of(shape);
@@ -152,7 +152,7 @@ void build_shapes(const Place& place, std::vector<Triangle>& out) {
     }
 }
 
-/// In place of the surface all that it sweeps; it stands about +Z then.
+/// Replaces the surface by its swept solid about +Z.
 void turn(const Place& place, std::vector<Triangle>& triangles) {
     place_triangles(place.source.at, triangles);
     RevolutionResult swept = swept_solid(triangles);

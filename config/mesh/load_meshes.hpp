@@ -16,15 +16,15 @@ struct MachineMeshes {
     std::vector<Mesh> bodies;  // [Machine::bodies], without triangles where a body has none (bare
                                // link, tool body)
     std::vector<Mesh> tools;   // [Machine::tools]
-    // What engines take in their place (config/mesh/simplify_meshes.hpp); without triangles, or not
-    // there: the surface itself.
+    // Replacements for the engines (config/mesh/simplify_meshes.hpp); absent or without triangles:
+    // the engines use the surface itself.
     std::vector<Mesh> simple_bodies, simple_tools;
-    std::vector<Mesh> of_pairs;      // [PairSurface::surface] what a pair has of its own
+    std::vector<Mesh> of_pairs;      // [PairSurface::surface] surfaces for one pair only
     std::vector<std::string> notes;  // allowed oddities by name: open, dropped facets
 };
 
-/// @param mesh_root  folder the relative file names start from; no file may leave it (symbolic
-/// links included) Either no faults, or all faults at once and `out` is untouched.
+/// Returns no faults, or all faults at once and leaves `out` untouched.
+/// @param mesh_root  folder of the relative file names; no file may leave it, not by links either
 [[nodiscard]] std::vector<ConfigFault> load_meshes(const Machine& machine,
                                                    const std::string& mesh_root,
                                                    MachineMeshes& out);

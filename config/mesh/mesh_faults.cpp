@@ -77,7 +77,7 @@ void judge_shells(const MeshReport& report, const MeshSource& source, const Judg
         "a simple surface; unite the parts in the mesh program, or set allow_self_intersection: "
         "true";
     const std::string consequence = "the surface is used unchanged";
-    // One point tells where a part lies: where parts cross, that says nothing.
+    // One point of a part decides whether it is nested; this is not valid for parts that cross.
     if (report.nested_shells != 0 && report.self_intersections == 0) {
         judgement.add(source.allow_self_intersection,
                       facets(report.nested_shells, "solid part", " inside another solid part",

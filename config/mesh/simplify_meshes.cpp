@@ -22,11 +22,11 @@ namespace axg {
 
 namespace {
 
-/// What the proposal is told it may deviate, as shares of what the machine file allows: its own
-/// measure of error is neither an upper nor a lower bound of the deviation.
+/// Error limits for the proposals, as shares of the deviation that the machine file allows:
+/// meshoptimizer's measure of error is neither an upper nor a lower bound of the deviation.
 constexpr float kShares[] = {2.0F, 1.0F, 0.7F, 0.5F, 0.35F, 0.25F, 0.1F, 0.01F};
 
-/// Corners in common become one: what moves together stays together.
+/// Merges common corners, so that triangles that share one stay connected when it moves.
 struct IndexedMesh {
     std::vector<Vec3f> corners;
     std::vector<std::uint32_t> indices;  // three a triangle
@@ -70,7 +70,7 @@ SimplifiedMesh simplify(const Mesh& whole, double most_mm) {
         if (fewer.triangles.empty() || fewer.triangles.size() >= best.triangles.size()) {
             continue;
         }
-        // What sticks out goes, and what the proposal lost stays as it was.
+        // Remove proposed triangles that are too far off; add whole ones that they do not cover.
         prune(triangles_beyond(fewer.triangles, whole.triangles, most_mm), fewer.triangles);
         if (fewer.triangles.empty()) {
             continue;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surfaces of fewer triangles for the engines, where the machine file asks for it
-// (mesh.simplify_mm). Meshoptimizer proposes, core/collision/deviation.hpp certifies. The whole
-// surfaces stay what bodies are.
+// Surfaces of fewer triangles for the engines, if the machine file sets mesh.simplify_mm.
+// Meshoptimizer proposes, core/collision/deviation.hpp certifies. The whole surfaces of the bodies
+// do not change.
 #pragma once
 
 #include <vector>
@@ -17,8 +17,8 @@ struct SimplifiedMesh {
     double deviation_mm = 0;  // every point of the whole surface is proven to be that near to it
     double excess_mm = 0;     // and every point of it to the whole surface
 };
-/// Fewer triangles, both within `most_mm`. None found, or a build without libmeshoptimizer: the
-/// whole, 0 and 0.
+/// Fewer triangles, deviation and excess at most `most_mm`. Returns `whole`, 0 and 0 if it finds no
+/// such surface, or in a build without libmeshoptimizer.
 [[nodiscard]] SimplifiedMesh simplify(const Mesh& whole, double most_mm);
 
 /// Simplifies each surface with simplify_mm into `meshes.simple_bodies` and `simple_tools`, and

@@ -65,12 +65,12 @@ double median_side_mm(const MachineMeshes& meshes) {
 constexpr std::array<LengthUnit, 4> kUnits{LengthUnit::mm, LengthUnit::inch, LengthUnit::m,
                                            LengthUnit::um};
 
-/// What the surface grows by when the file is read in `unit`.
+/// Factor of the surface's size if the file were read in `unit`.
 double scale_to(const MeshSource& source, LengthUnit unit) {
     return length_of(unit) / length_of(source.unit);
 }
 
-/// How often the reader is told to look: unit, extents in it, and the way to insist.
+/// The action of a fault: the unit that fits, the extents in it, and the key to accept the size.
 std::string advice(const MeshSource& source, const Box& box, std::optional<LengthUnit> unit) {
     const std::string insist = "or set size_is_right: true if the surface is that small";
     return unit ? fmt::format("unit: {}, which makes it {}; {}", name_of(*unit),

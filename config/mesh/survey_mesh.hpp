@@ -15,7 +15,7 @@ struct SurveyedMesh {
     Vec3d min_mm, max_mm;  // bounding box
     std::vector<std::string>
         faults;  // what no mark allows: such a mesh cannot be used before it is repaired
-    std::vector<std::string> notes;  // what the marks stand for
+    std::vector<std::string> notes;  // the oddities that the marks allow
 };
 
 /// @param root  folder; `file` may not leave it

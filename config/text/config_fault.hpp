@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is wrong with a file, where, and what to do next.
+// A fault of a file: its place, its text and the next action.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Collects what is wrong with one file and hands it back in the order of the lines.
+// Collects the faults of one file and returns them in the order of the lines.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace axg {
 
-/// What anybody repairs at a time.
+/// Faults shown at once: a person repairs no more at a time.
 inline constexpr std::size_t kFaultsShownMax = 20;
 
 class FaultList {
@@ -21,7 +21,7 @@ class FaultList {
     /// Beyond a thousand faults the rest is only counted: memory must stay bounded.
     void add(int line, std::string key, std::string got, std::string wanted);
 
-    /// The faults of another file, named at `line` of this one; they keep their own places.
+    /// Adds the faults of another file, sorted at `line` of this one, with their own file and line.
     void add_all(int line, const std::vector<ConfigFault>& faults);
 
     [[nodiscard]] bool empty() const noexcept { return faults_.empty(); }

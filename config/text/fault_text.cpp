@@ -6,7 +6,7 @@
 namespace axg {
 namespace {
 
-/// Where the action begins: behind "; " outside quotes and brackets. npos: there is none.
+/// Position of the first "; " outside quotes and brackets; the action follows it. npos: none.
 std::size_t semicolon_in(std::string_view text) {
     int depth = 0;
     bool is_quoted = false;

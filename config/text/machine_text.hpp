@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The words a machine was read from: all that has to be kept to read it again without its files.
+// The text a machine was read from: enough to read it again without its files.
 #pragma once
 
 #include <map>

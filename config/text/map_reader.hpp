@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads the keys of one YAML map, each by its own grammar and range, and reports whatever does not
-// belong there. Nothing is ever guessed: a value that cannot be read leaves its target untouched
-// and a fault behind.
+// Reads the keys of one YAML map, each by its own grammar and range, and reports all others. Never
+// guesses: a value that cannot be read adds a fault and leaves its target untouched.
 #pragma once
 
 #include <cstdint>
@@ -32,8 +31,8 @@ class MapReader {
     MapReader(const YamlNode& node, std::string path, std::initializer_list<std::string_view> keys,
               FaultList& faults);
 
-    /// The value of a key, or nullptr when it is absent, empty or refused. Absent though required,
-    /// and empty, are reported with `wanted`.
+    /// The value of a key, or nullptr when it is absent, empty or refused. Reports an
+    /// empty value, and an absent one if required, with `wanted`.
     const YamlNode* find(std::string_view key, Need need, std::string_view wanted);
     /// Whether the key is written at all, however badly.
     [[nodiscard]] bool has(std::string_view key) const noexcept;
@@ -67,7 +66,7 @@ class MapReader {
     const YamlNode& node_;
     std::string path_;
     FaultList& faults_;
-    std::vector<std::string_view> misspelt_;  // keys that unknown ones were taken for
+    std::vector<std::string_view> misspelt_;  // the nearest keys to those not allowed
 };
 
 /// Location and name of a value, for readers of single values.
@@ -81,7 +80,7 @@ bool read_whole(ValueSite site, WholeRange range, bool hex, std::uint32_t& out);
 bool read_numbers(ValueSite site, Range range, std::span<double> out);
 bool read_name(ValueSite site, std::string& out);
 
-/// A plain name as MapReader::name wants it.
+/// Whether `text` is a name as MapReader::name requires it.
 [[nodiscard]] bool is_name(std::string_view text) noexcept;
 inline constexpr std::size_t kNameLengthMax = 64;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// "Did you mean": the known word that a person most likely meant.
+// "Did you mean": the allowed word that a person most likely meant.
 #pragma once
 
 #include <span>
@@ -8,10 +8,10 @@
 
 namespace axg {
 
-/// The word of `known` within about a third of its letters of `word` (one slip at least: a letter
-/// missing, added, wrong, in the wrong case, or two swapped; a character that is not ASCII counts
-/// as one wrong letter). Empty when none is near. First of equals. Words over 64 bytes are not
-/// compared.
+/// The nearest of the allowed words, at most about a third of its letters from `word` (at least one
+/// slip: a letter missing, added, wrong, in the wrong case, or two swapped; a character that is not
+/// ASCII counts as one wrong letter). Empty when none is near. First of equals. Words over 64 bytes
+/// are not compared.
 [[nodiscard]] std::string_view nearest_word(std::string_view word,
                                             std::span<const std::string_view> known);
 

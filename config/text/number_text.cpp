@@ -21,7 +21,7 @@ std::size_t digits_from(std::string_view text, std::size_t at) noexcept {
     return end - at;
 }
 
-/// from_chars alone is too generous: it takes "inf", "1." and ".5".
+/// Stricter than from_chars(), which accepts "inf", "1." and ".5".
 bool follows_grammar(std::string_view text) noexcept {
     std::size_t at = !text.empty() && text[0] == '-' ? 1 : 0;
     const std::size_t whole = digits_from(text, at);

@@ -11,7 +11,7 @@
 namespace axg {
 
 /// -?(0|[1-9][0-9]*)(.[0-9]+)?([eE][+-]?[0-9]+)?, at most 64 characters, within double's normal
-/// range. Negative zero becomes zero. Nothing for any other text.
+/// range. Negative zero becomes zero. Any other text returns nullopt.
 [[nodiscard]] std::optional<double> decimal_number(std::string_view text) noexcept;
 
 /// 0|[1-9][0-9]*, at most 2^32 - 1.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads a whole regular file that lies beneath a folder, and nothing else.
+// Reads a whole regular file inside a folder, and nothing else.
 #pragma once
 
 #include <cstddef>
@@ -20,8 +20,8 @@ enum class PathLookup : std::uint8_t { kernel_or_walk, walk };
 
 /// @param root       folder; empty means the current one
 /// @param file       relative path; may not leave root, through .. or through a symbolic link
-/// @param bytes_max  a larger file is refused before memory is taken for it
-/// @param lookup     `walk` is for tests of the path that old kernels take
+/// @param bytes_max  a larger file is refused before memory is reserved for it
+/// @param lookup     `walk` is for tests of the code for old kernels
 /// Never blocks: a FIFO, socket, device or folder is refused without being opened for reading. On a
 /// kernel without openat2 (before 5.6) every symbolic link and every .. is refused.
 [[nodiscard]] FileRead read_beneath(const std::string& root, const std::string& file,

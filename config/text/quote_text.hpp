@@ -18,7 +18,7 @@ struct CodePoint {
 [[nodiscard]] CodePoint code_point_at(std::string_view text, std::size_t at) noexcept;
 
 /// True for what a terminal or an editor may act upon instead of showing: C0 and C1 controls, DEL,
-/// and the characters that turn the direction of writing or take no room.
+/// and the characters that turn the direction of writing or have no width.
 [[nodiscard]] bool is_steering(std::uint32_t code_point) noexcept;
 
 /// The text without quotation marks, every steering character and broken byte as an escape: \n,

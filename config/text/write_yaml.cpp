@@ -65,7 +65,7 @@ void write_entry(const YamlEntry& entry, std::size_t indent, std::string& out) {
     }
 }
 
-/// What was stated comes first: a list item then never begins with a comment.
+/// Writes stated entries first, then defaults: a list item then never begins with a comment.
 void write_map(const YamlNode& map, std::size_t indent, std::string& out) {
     for (const bool is_default : {false, true}) {
         for (const YamlEntry& entry : map.entries) {

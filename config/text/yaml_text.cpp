@@ -47,8 +47,8 @@ bool YamlText::check(FaultList& faults) const {
     return check_signs(faults) && check_characters(faults);
 }
 
-/// The parser keeps every sign of an open list in memory before it hands the first one on. A file
-/// with so many has more values than are allowed in any case; this only finds out sooner.
+/// The parser stores every sign of an open list before it passes the first one on. A file with more
+/// signs than this limit has too many values anyway; this check only finds it sooner.
 bool YamlText::check_signs(FaultList& faults) const {
     constexpr std::string_view kSigns = "[]{},&*!?";
     std::uint32_t count = 0;

@@ -87,11 +87,11 @@ class TreeBuilder final : public YAML::EventHandler {
         return node;
     }
 
-    /// Reports tags and anchors, and turns the node they stand on into a refused one.
+    /// Reports tags and anchors, and marks their node as refused.
     void check_properties(YamlNode& node, const YAML::Mark& mark, const std::string& tag,
                           YAML::anchor_t anchor) {
-        // The library shows a bare "!" as the tag of any quoted text: only the source tells them
-        // apart.
+        // The library reports "!" as the tag of every quoted text: only the source shows whether a
+        // "!" was written.
         const bool tagged = (tag != kPlainTag && tag != kQuotedTag && !tag.empty()) ||
                             text_.at(mark.line, mark.column) == '!';
         if (tagged) {
@@ -172,7 +172,7 @@ class TreeBuilder final : public YAML::EventHandler {
         }
     }
 
-    /// Where we are, as keys and list positions, with a final dot.
+    /// The path of the open node, as keys and list positions, with a final dot.
     std::string path() const {
         std::string out;
         for (std::size_t i = 0; i + 1 < frames_.size(); ++i) {
@@ -201,7 +201,7 @@ class TreeBuilder final : public YAML::EventHandler {
     void report(const YAML::Mark& mark, std::string got, std::string wanted) {
         faults_.add(mark.line + 1, key_here(), std::move(got), std::move(wanted));
         if (faults_.count() > kFaultsMax) {
-            throw StopParsing{};  // a thousand say enough
+            throw StopParsing{};  // a thousand faults are enough
         }
     }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A YAML document as a plain tree with line numbers, built in one bounded pass over the parser's
 // events: no node of the library's own is ever made, so aliases cannot multiply and depth cannot
-// run away. What the pass refuses (anchors, aliases, tags, duplicate or odd keys, a second
-// document) is reported by it, with its line.
+// run away. The pass refuses anchors, aliases, tags, duplicate or odd keys and a second document,
+// and reports each with its line.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ struct YamlEntry;
 
 struct YamlNode {
     enum class Kind : std::uint8_t { nothing, scalar, sequence, map, refused };
-    Kind kind = Kind::nothing;  // refused: already reported, say nothing more about it
+    Kind kind = Kind::nothing;  // refused: already reported, report no more about it
     int line = 0;
     bool is_quoted = false;          // a quoted or block text: never a number or a bool
     std::string text;                // scalar

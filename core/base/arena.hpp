@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one host allocation: taken apart at init, then sealed. What is taken is zeroed and aligned
-// for the widest load.
+// The one host allocation: divided at init, then sealed. Its parts are zeroed and aligned for the
+// widest load.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@ class Arena {
   public:
     static constexpr std::size_t kAlignment = 64;
 
-    /// Room that `count` items of T use up, alignment included.
+    /// Bytes that `count` items of T use, alignment included.
     template <class T>
     [[nodiscard]] static constexpr std::size_t size_bytes(std::size_t count) noexcept {
         return (count * sizeof(T) + kAlignment - 1) / kAlignment * kAlignment;

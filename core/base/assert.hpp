@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// What only a bug can break is asserted, in release too, and ends in a safe stop: nothing goes on
-// after a broken assumption. The default stop is abort(), which withdraws the permit because the
-// process is gone.
+// Assertions of conditions that only a bug can break, in release too. A failed one ends in a safe
+// stop: the program does not continue. The default stop is abort(), which withdraws the permit
+// because the process is gone.
 #pragma once
 
 namespace axg {
 
 using FailStop = void (*)(const char* condition, const char* file, int line) noexcept;
 
-/// Called once before the process ends; the live program sends its stop frame here. Returns the
-/// handler before.
+/// Sets the handler that is called once before the process ends; the live program sends its stop
+/// frame there. Returns the previous handler.
 FailStop set_fail_stop(FailStop handler) noexcept;
 
 [[noreturn]] void fail_stop(const char* condition, const char* file, int line) noexcept;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Eight bytes at a time ("slicing by 8", Kounavis and Berry, 2005): a compiled machine holds
-// megabytes, and a byte at a time would take as long as all else about it.
+// megabytes, and one byte at a time would need as long as the rest of its loading.
 #include "core/base/crc32.hpp"
 
 #include <array>
@@ -11,7 +11,7 @@ namespace {
 
 using Table = std::array<std::uint32_t, 256>;
 
-/// [k][byte]: what the byte comes to, k bytes further on.
+/// [k][byte]: contribution of the byte to the checksum k bytes later.
 constexpr std::array<Table, 8> kTables = [] {
     std::array<Table, 8> tables{};
     for (std::uint32_t i = 0; i < 256; ++i) {

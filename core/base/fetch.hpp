@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Memory that is read or written a little later: other programs may have taken the caches since the
-// last cycle, and what is asked for early costs nothing. Changes no result.
+// Prefetches memory that is read or written a little later: other programs may have used the caches
+// since the last cycle, and an early request costs nothing. Changes no result.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@ AXG_HD void fetch(const T& what) noexcept {
     }
 }
 
-/// The item in this place, which is written soon, if there is one.
+/// Prefetches the item in this place, if there is one, for a write.
 template <class T>
 AXG_HD void fetch_to_write(std::span<T> items, std::size_t place) noexcept {
     for (std::size_t at = 0; place < items.size() && at < sizeof(T); at += kCacheLineBytes) {

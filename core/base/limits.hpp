@@ -12,13 +12,13 @@ inline constexpr std::uint32_t kBodiesMax = 32;  // rigid bodies, the tool body 
 inline constexpr std::uint32_t kPairsMax = 256;  // checked pairs
 inline constexpr std::uint32_t kToolsMax = 64;   // preloaded tool slots
 inline constexpr std::uint32_t kMeshesMax = kBodiesMax + kToolsMax;
-// Of one mesh; also bounds an STL before allocation.
+// Triangles of one mesh; also bounds an STL before allocation.
 inline constexpr std::uint32_t kTrianglesMax = 1U << 22;
 // |vertex| and |translation|; far inside the 2^30 of the proof.
 inline constexpr double kCoordinateMmMax = 1.0e5;
 
-// How far a simplified surface may be from its body: both of a pair count as an error of the pose,
-// of which engines take 1 mm.
+// Largest deviation of a simplified surface: both of a pair count as an error of the pose, of which
+// engines accept 1 mm.
 inline constexpr double kSimplifyMmMax = 0.4;
 
 // Children a node, triangles a leaf: one warp, two AVX-512 lanes.

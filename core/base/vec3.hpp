@@ -11,7 +11,7 @@ template <class T>
 struct Vec3 {
     T x{}, y{}, z{};
 
-    // Constexpr by itself where T's is; said here, clang would refuse rational coordinates.
+    // Implicitly constexpr if T's is; with the keyword clang would refuse rational coordinates.
     friend bool operator==(const Vec3&, const Vec3&) = default;
 };
 using Vec3f = Vec3<float>;

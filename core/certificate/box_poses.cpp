@@ -8,7 +8,7 @@ namespace axg {
 
 namespace {
 
-/// Of b's joints the inverse: the way from a leads down to b against them.
+/// Inverts the joints that carry b: the path from a passes them against their direction.
 PathJoint joint_of(const Machine& machine, const JointPath& path, std::uint32_t k) noexcept {
     const Joint& moving = machine.bodies[path.body[k]].joint;
     return {moving.direction, moving.pivot_mm, k < path.count_a ? 1.0 : -1.0,
@@ -41,7 +41,7 @@ void BoxPoses::begin(const JointBoxTask& task, const JointBox& grid, const Joint
             continue;
         }
         const double places = std::round(grid.half[axis] / box.half[axis]);
-        const int bits = std::max(0, std::ilogb(places));  // 0 places where roundings are wider
+        const int bits = std::max(0, std::ilogb(places));  // 0 places if roundings are wider
         joints_[free_count_] = joint;
         free_[free_count_++] = {axis, static_cast<std::uint32_t>(bits),
                                 grid.centre[axis] - grid.half[axis],
@@ -60,8 +60,8 @@ void BoxPoses::begin(const JointBoxTask& task, const JointBox& grid, const Joint
     right_.known = left_.known = 0;
 }
 
-/// The product for these positions of a half's free joints, made once as long as its place is not
-/// taken by others.
+/// The product for these positions of a half's free joints. Recomputes it only if another product
+/// has replaced it in its place.
 template <class Product>
 Pose BoxPoses::remembered(Half& half, const std::array<double, kAxesMax>& position,
                           const Product& product) noexcept {
@@ -74,7 +74,7 @@ Pose BoxPoses::remembered(Half& half, const std::array<double, kAxesMax>& positi
         const Places& free = free_[i];
         at[i - half.begin] = position[free.axis];
         const double along = (position[free.axis] - free.low) * free.places_a_unit;
-        // NaN where the grid is a point, below 0 by a rounding: any place will do.
+        // NaN if the grid is a point, below 0 by a rounding: any place is valid.
         const bool is_inside = along >= 0 && along < 0x1p53;
         place = place << free.bits | (is_inside ? static_cast<std::uint64_t>(along) : 0);
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Poses of one pair at many positions that differ in few axes, as the boxes of a grid do: what the
-// other joints come to is multiplied once, and the rest split in two, so that positions share
+// Poses of one pair at many positions that differ in few axes, like the boxes of a grid. Multiplies
+// the poses of the other joints once and splits the rest into two halves, so that positions share
 // factors. Double, no allocation. Source: docs/theory/certificate.md, "Levers once".
 #pragma once
 
@@ -16,7 +16,7 @@
 
 namespace axg {
 
-/// Sines of the angles used last. Zeroed memory is no memo: make it before it is used.
+/// Sines of the angles used last. Needs its constructor: zeroed memory would give a wrong sine.
 class SineMemo {
   public:
     SineMemo() noexcept { entries_.fill({0, {0, 1}}); }
@@ -34,17 +34,17 @@ class BoxPoses {
   public:
     explicit BoxPoses(const Machine& machine) noexcept : machine_(&machine) {}
 
-    /// Of this pair, at the centres of boxes that were cut from `grid` as this one was: along these
-    /// axes, one bit each.
-    /// Cost: one product a joint of the path.
+    /// Prepares poses of this pair at the centres of boxes cut from `grid` like `box`.
+    /// @param cut  the axes along which they were cut, one bit each
+    /// Cost: one product for each joint of the path.
     void begin(const JointBoxTask& task, const JointBox& grid, const JointBox& box,
                std::uint32_t cut) noexcept;
 
-    /// a's mesh frame in b's, at such a position. Cost: one product, and where the memo lacks
-    /// them, one for each free joint and each stretch of fixed ones.
+    /// a's mesh frame in b's, at such a position. Cost: one product; if the memo lacks factors, one
+    /// more for each free joint and each run of fixed ones.
     [[nodiscard]] Pose at(const std::array<double, kAxesMax>& position) noexcept;
 
-    /// What `at` multiplies, and the axis of each of its joints.
+    /// The factors that `at` multiplies; axis() returns the axis of each of its joints.
     [[nodiscard]] PoseProduct product() const noexcept {
         return {joints_.data(), fixed_.data(), free_count_, right_.end};
     }
@@ -53,7 +53,7 @@ class BoxPoses {
     }
 
   private:
-    /// Where a free joint's position lies among its 2^bits places.
+    /// Maps a free joint's position to one of 2^bits places.
     struct Places {
         std::uint32_t axis;
         std::uint32_t bits;
@@ -62,7 +62,7 @@ class BoxPoses {
     /// Products of the free joints of one half of the path.
     struct Half {
         std::uint32_t begin, end;  // free joints
-        std::uint64_t known;       // which places hold a product
+        std::uint64_t known;       // places that hold a product, one bit each
         std::array<std::array<double, 4>, 64> position;
         std::array<Pose, 64> product;
     };
@@ -75,8 +75,8 @@ class BoxPoses {
     SineMemo sines_;
     std::uint32_t free_count_ = 0;
     std::array<Places, kPathMax> free_{};
-    std::array<PathJoint, kPathMax> joints_{};  // the free ones
-    std::array<Pose, kPathMax + 1> fixed_{};    // right of free joint i, up to the one before it
+    std::array<PathJoint, kPathMax> joints_{};  // the free joints
+    std::array<Pose, kPathMax + 1> fixed_{};    // right of free joint i, up to free joint i - 1
     Half right_{}, left_{};
 };
 

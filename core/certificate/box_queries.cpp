@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kAhead = 8;  // queries
 
-/// Finite, and everything in it within what kinematics and the engine take.
+/// Whether the box is finite and within the range of kinematics and of the engine.
 bool is_good(const Machine& machine, const JointBox& box) noexcept {
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
         const double limit =
@@ -28,13 +28,12 @@ bool is_good(const Machine& machine, const JointBox& box) noexcept {
     return true;
 }
 
-/// The box that a grid's parts are cut from: a leaf of the task's pieces, or its own box.
+/// The box that is cut into a grid's parts: a leaf of the task's pieces, or its own box.
 const JointBox& grid_of(const JointBoxTask& task, std::uint32_t grid) noexcept {
     return grid == kNoIndex ? task.box : task.pieces[grid];
 }
 
-/// A box has room for many axes, and a machine has few: to copy all would take half the time of
-/// posing.
+/// Copies only the machine's axes. Copying all kAxesMax would cost half the time of posing.
 void copy_box(const Machine& machine, const JointBox& from, JointBox& to) noexcept {
     std::copy_n(from.centre.begin(), machine.axes.size(), to.centre.begin());
     std::copy_n(from.half.begin(), machine.axes.size(), to.half.begin());
@@ -66,7 +65,7 @@ std::uint32_t BoxQueries::find_roots(std::span<const JointBoxTask> tasks,
             results[i].open = box;
             continue;
         }
-        results[i].proof = JointBoxProof::proven;  // until an item of it is left unproven
+        results[i].proof = JointBoxProof::proven;  // until an item of it remains unproven
         if (is_proven_already(tasks[i], box)) {
             continue;
         }
@@ -76,14 +75,14 @@ std::uint32_t BoxQueries::find_roots(std::span<const JointBoxTask> tasks,
     return count;
 }
 
-/// Of every task that is to be proven, over its whole box: they hold for every part of it.
+/// Computes the levers of every root over its whole box: they are valid for every part of it.
 void BoxQueries::find_levers(std::span<const JointBoxTask> tasks,
                              std::span<const BoxItem> roots) noexcept {
     std::array<Pose, kBodiesMax> moved;
     const JointBox* before = nullptr;
     for (const BoxItem& item : roots) {
         const JointBoxTask& task = tasks[item.task];
-        if (before == nullptr || before->centre != item.box.centre) {  // mostly they are one
+        if (before == nullptr || before->centre != item.box.centre) {  // mostly the same
             move_bodies(*machine_, item.box.centre, moved);
         }
         before = &item.box;
@@ -118,8 +117,8 @@ void BoxQueries::pose_grid(const JointBoxTask& task, std::span<BoxItem> items,
     }
     poses_->begin(task, grid_of(task, first.grid), first.box, first.cut);
     for (std::size_t i = 0; i < items.size(); ++i) {
-        // The motion in the box is a matter of what is left. Levers of whole surfaces are no
-        // shorter.
+        // Only the remaining triangles need the motion bound. Levers of whole surfaces are no
+        // shorter than theirs.
         const bool is_pruned = is_pruned_for(*machine_, task, items[i].box);
         fetch_to_write(queries, i + kAhead);
         queries[i] = Query{.is_float_only = are_float_only_,
@@ -131,7 +130,8 @@ void BoxQueries::pose_grid(const JointBoxTask& task, std::span<BoxItem> items,
     }
 }
 
-/// What parts of boxes like this one have in common. False: there are none, or too many joints.
+/// Computes what is common to the parts of boxes cut like this one. False: the box cannot be cut
+/// `depth` times, or too many joints.
 bool BoxQueries::plan_tree(const JointBoxTask& task, const BoxItem& root, std::uint32_t depth,
                            QueryTree& tree, TreePlan& plan) noexcept {
     const JointBox& grid = grid_of(task, root.grid);
@@ -164,7 +164,7 @@ bool BoxQueries::plan_tree(const JointBoxTask& task, const BoxItem& root, std::u
     tree.is_apart = task.pruned.is_apart;
     std::copy_n(product.joints, product.count, tree.joint);
     std::copy_n(product.fixed, product.count + 1, tree.fixed);
-    JointBox uncut = box;  // as far as the axes go that a part is not cut along
+    JointBox uncut = box;  // its axes along which no part is cut; the others inside the travel
     const Travel& travel = machine_->travel;
     for (std::uint32_t i = 0; i < product.count; ++i) {
         const std::uint32_t axis = poses_->axis(i);
@@ -213,7 +213,7 @@ std::optional<std::uint32_t> BoxQueries::plan_parts(std::span<const JointBoxTask
         to.pruned_a = task.pruned.mesh_a;
         to.pruned_b = task.pruned.mesh_b;
         to.tree = static_cast<std::uint16_t>(count - 1);
-        // The axes that were cut along are the same as the tree's of the root before.
+        // Alike roots share a tree: the cut axes are those of the newest plan_tree.
         const QueryTree& tree = trees[count - 1];
         for (std::uint32_t k = 0; k < tree.joints; ++k) {
             to.centre[k] = root.box.centre[poses_->axis(k)];

@@ -28,7 +28,7 @@ std::array<double, kJogRungs> jog_ladder(double margin_mm, double before_mm) noe
     const double low = std::max(0.0, std::min(before_mm, margin_mm));
     const double fine = std::min(kJogRungMm, (margin_mm - low) / kJogRungs);
     const double coarse = (margin_mm - low - kHalf * fine) / kHalf;
-    // The fine half lies next to the floor in force.
+    // Fine rungs are next to the present floor.
     const bool is_fine_below = before_mm != kNoJogFloor;
     std::array<double, kJogRungs> rungs;
     double at = margin_mm;
@@ -51,8 +51,8 @@ AxisLimits jog_limits(const JogRules& rules, const Axis& axis) noexcept {
 
 namespace {
 
-/// Nothing is required of its speed: it may be at the largest, and may still be accelerating. A
-/// stop that begins then takes the acceleration away by its jerk, and the speed rises meanwhile.
+/// Assumes no measured speed: the axis may be at its largest speed and still accelerate. A stop
+/// from there first reduces the acceleration at the jerk limit, and the speed rises meanwhile.
 AxisLimits limits_in_stop(const AxisLimits& limits) noexcept {
     AxisLimits in_stop = limits;
     in_stop.speed_max += 0.5 * limits.acceleration_max * limits.acceleration_max / limits.jerk_max;
@@ -74,7 +74,7 @@ double jog_turn_reach(const AxisLimits& limits) noexcept {
 
 namespace {
 
-/// From one position to another, the short way round where the axis has no end.
+/// Signed travel from one position to another; the shorter direction for an unlimited axis.
 double way_between(const Axis& axis, double from, double to) noexcept {
     return axis.unlimited ? std::remainder(to - from, 2 * kPi) : to - from;
 }

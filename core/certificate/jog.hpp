@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Jogging out of a place near an obstacle: what the board says of a jog, how far its axis can get,
-// how near a pair may come in it, and whether the axes keep to it. mm, rad and s. Pure.
+// Jogging away from an obstacle: the jog that the board reports, how far its axis can move, the
+// floor of a pair during it, and whether the axes follow it. mm, rad and s. Pure.
 // Source: docs/theory/certificate.md, "Jogging out".
 #pragma once
 
@@ -15,34 +15,34 @@
 
 namespace axg {
 
-/// What a pair may lose of the clearance it has, beyond what errors of position may feign: for a
-/// way that leads past an obstacle at first, before it leads away from it.
+/// Clearance that a pair may lose in a jog, in addition to apparent changes by position errors:
+/// allows a jog that first passes an obstacle before it leads away from it.
 inline constexpr double kJogGiveMm = 0.02;
 
-/// The distance that a pair keeps in a jog: its margin, or where it is nearer, what it has. At
-/// least 0, and more than that everywhere: never a contact.
+/// Jog floor: the pair's margin or, if the pair is nearer, its clearance less the errors. At least
+/// 0. A proof requires more distance than the floor, so a contact is never permitted.
 /// @param clearance_mm  certified, at the reported position
-/// @param errors_mm     what the errors of a reported position can make of a distance; they count
-///     three times: in this clearance, in that of a later position, and for the axes between
+/// @param errors_mm     largest change of a distance by the errors of a reported position; they
+///     count three times: in this clearance, in that of a later position, and for the axes between
 [[nodiscard]] constexpr double jog_floor_mm(double margin_mm, double clearance_mm,
                                             double errors_mm) noexcept {
     return std::max(0.0, std::min(margin_mm, clearance_mm - 3 * errors_mm - kJogGiveMm));
 }
 
-/// A pair's floor in a jog is the highest of these rungs that one query proves: a fixed number of
-/// queries in place of a clearance. Rungs next to the floor in force are at most kJogRungMm apart.
+/// A pair's floor in a jog is the highest of these rungs that one query proves. This needs a fixed
+/// number of queries and no clearance. Rungs near the present floor are at most kJogRungMm apart.
 inline constexpr std::uint32_t kJogRungs = 16;
 inline constexpr double kJogRungMm = 0.05;
-inline constexpr double kNoJogFloor = -1;  // mm; no jog before this one counts
-/// Pairs nearer than their margin: more of them have no floor. Where a jog begins no more is asked
-/// than by the last stage of a plan.
+inline constexpr double kNoJogFloor = -1;  // mm; no earlier jog counts
+/// Largest number of pairs nearer than their margin for which a jog has floors. The start of a jog
+/// runs no more queries than the last stage of a plan.
 [[nodiscard]] constexpr std::uint32_t jog_ladders(const CyclePlan& plan) noexcept {
     return std::clamp(plan.queries[plan.stages - 1] / (kJogRungs - 1), 1U, 32U);
 }
 
-/// Floors from the margin down, mm; below the last rung comes `before_mm`, or 0 without one.
-/// @param before_mm  the floor in force: what the jog before kept, which this one does not go
-///     below; kNoJogFloor: the margin was
+/// Floors from the margin down, mm; no rung is below `before_mm`, or below 0 without one.
+/// @param before_mm  floor of the jog before, the lower bound of this one; kNoJogFloor: the margin
+///     was the floor
 [[nodiscard]] std::array<double, kJogRungs> jog_ladder(double margin_mm, double before_mm) noexcept;
 
 /// The distance that proves a rung.
@@ -58,36 +58,36 @@ struct JogMove {
     friend constexpr bool operator==(const JogMove&, const JogMove&) = default;
 };
 
-/// As the board reports it: the axis may be one that the machine does not have.
+/// The jog that the board reports; its axis index may exceed the machine's axes.
 [[nodiscard]] JogMove jog_of(const AxisSnapshot& snapshot) noexcept;
-/// Says it. Precondition: move.axis is one of the machine's.
+/// Writes it into the snapshot. Precondition: move.axis is an axis of the machine.
 void put_jog(const JogMove& move, AxisSnapshot& snapshot) noexcept;
 
-/// The axis' limits in a jog; those of the stop are as ever.
+/// The axis' limits in a jog; jerk and stopping deceleration are unchanged.
 [[nodiscard]] AxisLimits jog_limits(const JogRules& rules, const Axis& axis) noexcept;
 
-/// How far its command can take the axis from any instant of a jog to standstill, in the jog's
-/// direction; the other way it does not go.
-/// @param free_s  until braking must have begun
+/// How far the commanded position can move from any instant of a jog to standstill, in the jog's
+/// direction; it does not move the other way.
+/// @param free_s  latest start of braking
 [[nodiscard]] double jog_reach(const AxisLimits& limits, double free_s) noexcept;
 
-/// How far back it goes in a stop that turns it round (StopReversal::jerk_limited).
+/// How far it moves back in a stop that reverses the axis (StopReversal::jerk_limited).
 [[nodiscard]] double jog_turn_reach(const AxisLimits& limits) noexcept;
 
-/// Whether the axes keep to the jog that the board reports: all stand where it begins, then one
-/// alone moves, never back and never too fast, as far as errors of position let that be told.
+/// Checks that the axes follow the jog that the board reports, within the errors of position: all
+/// axes are at rest when it begins, then only one moves, never back and never too fast.
 class JogWatch {
   public:
-    /// The newest snapshot.
+    /// Checks the newest snapshot.
     /// @param errors    [axes] of a reported position
-    /// @param is_first  nothing before it counts
-    /// @return false: it does not keep to it, or it is a jog of no axis. Stays so until the jog
-    /// ends
+    /// @param is_first  earlier snapshots do not count
+    /// @return false: the axes do not follow the jog, or the machine lacks its axis. Remains false
+    /// until the jog ends
     [[nodiscard]] bool note(const Machine& machine, const AxisSnapshot& snapshot,
                             const std::array<SampleErrors, kAxesMax>& errors,
                             bool is_first) noexcept;
 
-    /// No axis: the newest snapshot is of no jog that the machine file makes a promise about.
+    /// No axis: the snapshot reports no jog, or the machine file does not promise single_jog.
     [[nodiscard]] const JogMove& move() const noexcept { return move_; }
     [[nodiscard]] bool is_on() const noexcept { return move_.axis != kNoIndex; }
 
@@ -97,9 +97,9 @@ class JogWatch {
                                 const std::array<SampleErrors, kAxesMax>& errors) noexcept;
 
     JogMove move_;
-    std::array<double, kAxesMax> from_{}, at_{};  // where it began, and of the newest snapshot
+    std::array<double, kAxesMax> from_{}, at_{};  // positions at its start, and the newest
     std::uint64_t last_ = 0;                      // sample
-    double way_ = 0, farthest_ = 0;               // of the axis since it began
+    double way_ = 0, farthest_ = 0;               // of the axis since the start
     std::uint16_t tool_ = 0;
     bool has_left_ = false;
 };

@@ -16,7 +16,7 @@ namespace axg {
 
 namespace {
 
-/// As far as the pair's own axes go.
+/// Checks only the axes of the pair's path.
 bool is_in_box(const Machine& machine, const JointPath& path, const JointBox& box,
                std::span<const double> position) noexcept {
     bool inside = true;
@@ -55,8 +55,7 @@ void halve(JointBox& box, std::uint32_t axis, bool is_upper, const JointBox& gri
     const double quarter = 0.5 * box.half[axis];
     const double centre = box.centre[axis];
     box.centre[axis] = is_upper ? centre + quarter : centre - quarter;
-    // The centre may be rounded by half a unit in its last place, and none is farther out than the
-    // grid.
+    // Rounding may move the centre by half a unit in its last place; no centre is outside the grid.
     box.half[axis] = quarter + 0x1p-52 * (std::fabs(grid.centre[axis]) + grid.half[axis]);
 }
 
@@ -132,7 +131,7 @@ void JointBoxProver::run(const Engine& engine, std::uint32_t count, JointBoxWork
     if (has_known_answer) {
         const QueryResult &far = query_results_[count], &near = query_results_[count + 1];
         const bool is_lost = engine.run_groups == nullptr && is_batch_lost(far, near);
-        if (is_lost) {  // no other result counts
+        if (is_lost) {  // no other result is valid
             std::fill_n(query_results_.begin(), count, far);
         }
         const std::uint16_t seen =
@@ -144,8 +143,8 @@ void JointBoxProver::run(const Engine& engine, std::uint32_t count, JointBoxWork
     work.queries += count;
 }
 
-/// Judges the results of a round; what is not proven is split for the next. Returns its size, or
-/// more than there is room for.
+/// Evaluates the results of a round and splits unproven boxes for the next. Returns the number of
+/// boxes in the next round.
 std::uint32_t JointBoxProver::split(std::span<const JointBoxTask> tasks,
                                     std::span<JointBoxResult> results,
                                     std::uint32_t count) noexcept {
@@ -159,7 +158,7 @@ std::uint32_t JointBoxProver::split(std::span<const JointBoxTask> tasks,
             continue;
         }
         if (result.proof != JointBoxProof::proven) {
-            continue;  // given up already
+            continue;  // the task has already failed
         }
         result.status = query_result.status;
         if (!may_help_to_split(query_result.status, queries_[i].r_mm)) {
@@ -178,7 +177,7 @@ std::uint32_t JointBoxProver::split(std::span<const JointBoxTask> tasks,
     return next;
 }
 
-/// Boxes of tasks that are given up need no result.
+/// Discards the boxes of tasks that have failed.
 std::uint32_t JointBoxProver::drop_given_up(std::span<const JointBoxResult> results,
                                             std::uint32_t count) noexcept {
     std::uint32_t kept = 0;
@@ -200,7 +199,7 @@ JointBoxWork JointBoxProver::prove(const Engine& engine, std::span<const JointBo
     std::uint32_t count = boxes_->find_roots(tasks, results, items_);
     JointBoxWork work;
     if (count == 0 && budget_.known_answer_mesh != kNoIndex) {
-        run(engine, 0, work);  // an engine that is broken is found out in a cycle without pairs too
+        run(engine, 0, work);  // detects a broken engine in a cycle without pairs, too
     }
     while (count != 0) {
         if (work.rounds == rounds || count > queries - work.queries) {

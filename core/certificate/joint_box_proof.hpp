@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Proves that pairs of bodies keep their margin everywhere in a joint box: every
-// instant in it, with no tunnelling between samples. A box that is not proven in one query is
-// split along the axis that moves most, breadth first, within a fixed number of rounds and
-// queries. Budget spent = not proven. Source: docs/theory/certificate.md, "The prover".
+// Proves that pairs of bodies are farther apart than their margin everywhere in a joint box. The
+// proof covers every instant in it, with no tunnelling between samples. The prover splits a box
+// that one query does not prove along the axis that moves most, breadth first, within a fixed
+// number of rounds and queries. Budget spent = not proven.
+// Source: docs/theory/certificate.md, "The prover".
 #pragma once
 
 #include <cstdint>
@@ -17,33 +18,34 @@
 
 namespace axg {
 
-/// What is left of a pair's surfaces once the never-colliding set is pruned, for queries about
-/// boxes within the travel (core/certificate/travel.hpp).
+/// A pair's surfaces without the never-colliding set, for queries about boxes within the travel
+/// (core/certificate/travel.hpp).
 struct PrunedSurfaces {
-    double up_to_mm = -1;   // for margins up to this; negative: nothing was pruned
-    bool is_apart = false;  // nothing is left: such a box is proven as it is
+    double up_to_mm = -1;   // valid for margins up to this; negative: no pruning
+    bool is_apart = false;  // no triangle remains: a box needs no query
     std::uint32_t mesh_a = 0, mesh_b = 0;
 };
 
-/// One pair over one box, or over a stretch of a path that the box lies around.
+/// One pair over one box, or over a stretch of a path that the box encloses.
 struct JointBoxTask {
     std::uint32_t body_a = 0, body_b = 0;  // Machine::bodies
-    std::uint32_t mesh_a = 0, mesh_b = 0;  // as the engine was given them
+    std::uint32_t mesh_a = 0, mesh_b = 0;  // indices of the engine's surfaces
     const BodyExtent* extent_a = nullptr;
     const BodyExtent* extent_b = nullptr;
     Pose at_a, at_b;  // mesh frames to the bodies' frames at the zero pose (Body::at, Tool::at)
     JointPath path;
     double margin_mm = 0;
-    // Of every query: arithmetic, and what simplified surfaces cost.
+    // Error of every query: arithmetic, plus the deviation of simplified surfaces.
     double pose_error_mm = kPlacementErrorMm;
     PrunedSurfaces pruned;
     JointBox box;
-    // The stretch in pieces: the first lies around all of it, and the children of piece i are
-    // 2 i + 1 and 2 i + 2. These are queried before a box is split. Empty: the box alone.
+    // The stretch as a binary tree of boxes: piece 0 encloses all of it, and the children of piece
+    // i are 2 i + 1 and 2 i + 2. The prover queries these before it splits a box. Empty: no
+    // stretch, only `box`.
     std::span<const JointBox> pieces{};
 };
 
-/// A pair's two bodies, placed.
+/// The placed bodies of a pair.
 struct PlacedPair {
     PlacedBody a, b;
 };
@@ -51,53 +53,52 @@ struct PlacedPair {
 [[nodiscard]] PlacedPair placed_pair(const JointBoxTask& task,
                                      std::span<const Pose> moved) noexcept;
 
-/// Whether the pair is more than `r_mm` apart there.
+/// Query whether the pair is more than `r_mm` apart at these poses.
 [[nodiscard]] Query query_of(const JointBoxTask& task, const PlacedPair& pair,
                              double r_mm) noexcept;
 
-/// Half of the box: lower or upper. Together the two cover it, roundings included, and they are
-/// equally wide, as all boxes are that were cut from the grid along the same axes.
-/// @param grid  the whole box that this one was cut from, or is
+/// The lower or upper half of the box. Both halves together cover it, roundings included. They are
+/// equally wide, like all boxes cut from the grid along the same axes.
+/// @param grid  the whole box that this one was cut from, or this box itself
 [[nodiscard]] JointBox half_of(const JointBox& box, std::uint32_t axis, bool is_upper,
                                const JointBox& grid) noexcept;
-/// The same in its place.
+/// The same in place.
 void halve(JointBox& box, std::uint32_t axis, bool is_upper, const JointBox& grid) noexcept;
 
-/// Whether what was pruned keeps the margin everywhere in the box: queries about it are then of
-/// what is left.
+/// Whether the pruned triangles stay beyond the margin everywhere in the box: queries about the box
+/// may then use the pruned surfaces.
 [[nodiscard]] bool is_pruned_for(const Machine& machine, const JointBoxTask& task,
                                  const JointBox& box) noexcept;
 
-/// Whether a smaller box may be proven where this one was not: it needs less distance, and less
-/// work.
+/// Whether the halves of an unproven box may be proven: each needs less distance and less work.
 [[nodiscard]] bool may_help_to_split(QueryStatus status, double r_mm) noexcept;
 
 enum class JointBoxProof : std::uint8_t {
     not_run = 0,
     proven,         // farther apart than the margin, everywhere in the box
     budget_spent,   // not proven within the rounds or queries
-    engine_failed,  // a result other than ok: `status` says which
-    bad_box,        // not finite, or outside of what kinematics takes
+    engine_failed,  // splitting cannot help: `status` is the engine's result
+    bad_box,        // not finite, or outside the range of kinematics
 };
 
 struct JointBoxResult {
     JointBoxProof proof = JointBoxProof::not_run;
     QueryStatus status = QueryStatus::not_run;
     std::uint32_t queries = 0;  // run for this task
-    JointBox open;              // the first box that was left unproven, where there is one
+    JointBox open;              // the first unproven box, if any
 };
 
 struct JointBoxBudget {
     std::uint32_t rounds = 7;      // 6 splits: 64 boxes a pair
-    std::uint32_t queries = 1024;  // of all tasks together
-    // The known-far and known-near queries ride in every batch (core/collision/known_answer.hpp),
-    // on top of the queries; kNoIndex: no known-answer test.
+    std::uint32_t queries = 1024;  // total of all tasks
+    // Every batch contains the two queries of the known-answer test in addition to the budget
+    // (core/collision/known_answer.hpp). kNoIndex: no known-answer test.
     std::uint32_t known_answer_mesh = kNoIndex;
 };
 
-/// The pair's surfaces at a position that its proof holds for. Of a stretch in pieces the leaves
-/// are proven and nothing else of the boxes around them, so the position is looked for in the
-/// first leaf, where the stretch begins. Not proven: it lies outside, or the task is not proven.
+/// The pair's surfaces at a position inside its proven box. A proof of a stretch in pieces covers
+/// only the leaves, not the rest of the boxes around them, so this checks the position against the
+/// first leaf, where the stretch begins. Not proven: position outside, or task not proven.
 /// @param position  [axes] mm or rad
 /// @param moved     [bodies] motions there (move_bodies)
 [[nodiscard]] ApartPose apart_pose_in(const Machine& machine, const JointBoxTask& task,
@@ -105,24 +106,24 @@ struct JointBoxBudget {
                                       std::span<const double> position,
                                       std::span<const Pose> moved) noexcept;
 
-/// What one call may spend of the budget.
+/// Share of the budget that one call may use.
 struct JointBoxSpend {
     std::uint32_t rounds = UINT32_MAX, queries = UINT32_MAX;
 };
 
-/// What a call of `prove` came to, all tasks together.
+/// Work of one call of `prove`, total of all tasks.
 struct JointBoxWork {
-    std::uint32_t rounds = 0, queries = 0;     // the known-answer test's do not count
-    std::uint16_t known_answer_signature = 0;  // kKnownAnswerSignature: right in every batch
+    std::uint32_t rounds = 0, queries = 0;     // without those of the known-answer test
+    std::uint16_t known_answer_signature = 0;  // kKnownAnswerSignature: correct in every batch
 };
 
 /// A part of a task's box.
 struct BoxItem {
     std::uint32_t task;
-    std::uint32_t widest_axis;  // kNoIndex: it cannot be cut
-    std::uint32_t piece;        // of the task's; kNoIndex: part of one
-    std::uint32_t grid;         // the piece that it is a part of; kNoIndex: of the task's own box
-    std::uint32_t cut;          // along which axes it was cut from it, one bit each
+    std::uint32_t widest_axis;  // kNoIndex: cannot be cut
+    std::uint32_t piece;        // index in JointBoxTask::pieces; kNoIndex: part of a box
+    std::uint32_t grid;         // the piece it was cut from; kNoIndex: the task's own box
+    std::uint32_t cut;          // axes along which it was cut from the grid, one bit each
     JointBox box;
 };
 
@@ -130,7 +131,7 @@ class BoxQueries;
 
 class JointBoxProver {
   public:
-    /// Reserves everything for at most `tasks` tasks at a time. Empty: not that much memory.
+    /// Reserves memory for at most `tasks` tasks per call. Empty: not enough memory.
     [[nodiscard]] static std::optional<JointBoxProver> create(const Machine& machine,
                                                               std::uint32_t tasks,
                                                               const JointBoxBudget& budget);
@@ -156,7 +157,7 @@ class JointBoxProver {
     Arena arena_;
     std::span<BoxItem> items_, next_;  // [queries]
     BoxQueries* boxes_ = nullptr;      // in the arena
-    std::span<Query> queries_;         // and two of the known-answer test
+    std::span<Query> queries_;         // plus two for the known-answer test
     std::span<QueryResult> query_results_;
 };
 

@@ -12,8 +12,8 @@ namespace axg {
 
 namespace {
 
-constexpr double kSquareMin = 0x1p-900;  // below, squares may have lost what they are made of
-constexpr double kUp = 1.0 + 0x1p-40;    // more than the roundings of any formula below
+constexpr double kSquareMin = 0x1p-900;  // smaller squares may have lost terms to underflow
+constexpr double kUp = 1.0 + 0x1p-40;    // exceeds the roundings of any formula below
 
 struct Line {
     Vec3d point, direction;
@@ -31,7 +31,7 @@ Line axis_seen_from(const Pose& placed, const Pose& moved, const Joint& joint) n
             rotate(to_mesh, rotate(moved, joint.direction))};
 }
 
-/// Largest distance of any point of the body from the line: the better of its box and its ball.
+/// Largest distance of any point of the body from the line: the smaller bound of box and ball.
 double reach_mm(const BodyExtent& extent, const Line& line) noexcept {
     double corner = 0;
     for (unsigned i = 0; i < 8; ++i) {
@@ -44,15 +44,15 @@ double reach_mm(const BodyExtent& extent, const Line& line) noexcept {
            kPlacementErrorMm;
 }
 
-/// How far a point moves at most that is `lever` away from an axis turned by up to `half`.
+/// Largest motion of a point `lever` away from an axis that turns by up to `half`.
 double chord_mm(double lever, double half_rad) noexcept {
     return half_rad >= kPi ? 2.0 * lever : 2.0 * lever * sin_cos(0.5 * half_rad).sin * kUp;
 }
 
-/// Linear joints of a path with no rotary one between them: they move the body by one vector, the
-/// sum of theirs, whose length is at most the root of sum w_i w_j |d_i . d_j|, whatever the signs.
+/// Linear joints of a path with no rotary one between them move the body by the sum of their
+/// vectors. Its length is at most the root of sum w_i w_j |d_i . d_j|, whatever the signs.
 /// @param half  [axes] mm
-/// @param out   [count] how much of that length is each joint's: they sum up to it. mm
+/// @param out   [count] each joint's share of that length, mm; the shares add up to it
 void shift_mm(const Machine& machine, const std::uint32_t* bodies, std::uint32_t count,
               std::span<const double> half, double* out) noexcept {
     double square = 0;
@@ -78,8 +78,8 @@ bool is_linear(const Machine& machine, const JointPath& path, std::uint32_t k) n
     return machine.axes[machine.bodies[path.body[k]].joint.axis].kind == AxisKind::linear;
 }
 
-/// Of every group of linear joints.
-/// @param out  [path] mm; of a rotary joint 0
+/// Computes shift_mm for every group of adjacent linear joints.
+/// @param out  [path] mm; 0 for a rotary joint
 void shifts_along(const Machine& machine, const JointPath& path, std::span<const double> half,
                   double* out) noexcept {
     for (std::uint32_t k = 0; k < path.count;) {
@@ -92,10 +92,10 @@ void shifts_along(const Machine& machine, const JointPath& path, std::span<const
     }
 }
 
-/// The levers of one of the two bodies: at the box's centre, and what the joints between may add.
-/// @param from_a  the body is the path's first end: joints come in the path's order
+/// The levers of one body: at the box's centre, plus the motion of the joints between.
+/// @param from_a  the body is at the path's first end: visit joints in the path's order
 /// @param shifts  [path] of the linear joints (shifts_along)
-/// @param out     [path] mm, the less of what it holds and of these; rotary joints alone
+/// @param out     [path] mm, lowered to these levers if larger; only rotary joints
 void levers_of(const Machine& machine, const JointPath& path, std::span<const Pose> moved,
                const PlacedBody& body, bool from_a, const JointBox& box, const double* shifts,
                double* out) noexcept {
@@ -110,7 +110,7 @@ void levers_of(const Machine& machine, const JointPath& path, std::span<const Po
         const Line axis = axis_seen_from(body.placed, moved[path.body[at]], joint);
         const double lever_mm = reach_mm(*body.extent, axis) + between_mm * kUp;
         between_mm += chord_mm(lever_mm, box.half[joint.axis]);
-        // Turning a about an axis is turning b the other way: the shorter lever counts.
+        // Turning a about an axis equals turning b the other way: the shorter lever counts.
         out[at] = std::min(out[at], lever_mm);
     }
 }
@@ -149,7 +149,7 @@ BodyExtent extent_of(const Mesh& mesh) noexcept {
 
 JointPath path_between(const Machine& machine, std::uint32_t a, std::uint32_t b) noexcept {
     JointPath path;
-    // Parents come first, so the body with the larger index is never an ancestor of the other.
+    // Parents have smaller indices: the body with the larger index is no ancestor of the other.
     std::array<std::uint32_t, kPathMax> from_b{};
     std::uint32_t count_b = 0;
     const auto moves = [&machine](std::uint32_t body) {

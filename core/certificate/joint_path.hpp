@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far two bodies can come closer while the axes stay in a box: the joints on the way from one
-// to the other, and what each can move at most. Pure, double, no allocation; rounded outwards.
+// Bounds how far two bodies can approach each other while the axes stay in a box: the joints on the
+// path between them, and the largest motion of each. Pure, double, no allocation; rounded outwards.
 // Source: docs/theory/certificate.md, "From boxes to queries".
 #pragma once
 
@@ -15,12 +15,13 @@
 
 namespace axg {
 
-/// Every position the axes may take: centre +- half, mm or rad, in Machine::axes order. half >= 0.
+/// An interval of positions for each axis: centre +- half, mm or rad, in Machine::axes order.
+/// half >= 0.
 struct JointBox {
     std::array<double, kAxesMax> centre{}, half{};
 };
 
-/// What a body's surface lies in, in its mesh frame: a box, and a ball about the box's middle.
+/// Bounds of a body's surface in its mesh frame: a box, and a ball about the box's middle.
 struct BodyExtent {
     Vec3d low_mm, high_mm, middle_mm;
     double radius_mm = 0;
@@ -29,18 +30,18 @@ struct BodyExtent {
 
 inline constexpr std::uint32_t kPathMax = kBodiesMax;
 
-/// The moving joints between two bodies, from a's to b's: each joint by the body that it carries.
+/// The moving joints between two bodies, from a's to b's, each identified by the body it carries.
 struct JointPath {
-    std::uint32_t count = 0, count_a = 0;  // count_a: the first ones carry a, the others b
+    std::uint32_t count = 0, count_a = 0;  // the first count_a joints carry a, the others b
     std::array<std::uint32_t, kPathMax> body{};
 };
 [[nodiscard]] JointPath path_between(const Machine& machine, std::uint32_t a,
                                      std::uint32_t b) noexcept;
 
-/// What the joints of a path can take from the distance of the two bodies, anywhere in a box.
+/// Bound of how much the joints of a path can reduce the distance of the two bodies in a box.
 struct PathMotion {
     double total_mm = 0;  // dist(q) >= dist(centre) - total_mm for every q in the box
-    std::uint32_t widest_axis = kNoIndex;  // whose halves gain most; kNoIndex: nothing moves
+    std::uint32_t widest_axis = kNoIndex;  // the best axis to split; kNoIndex: no motion
 };
 
 /// Pose of a body at the centre of a joint box.
@@ -49,26 +50,26 @@ struct PlacedBody {
     Pose placed;  // its mesh frame in machine coordinates
 };
 
-/// How far from the axis of each rotary joint of a path any point of the body that it turns gets at
-/// most, mm, wherever the axes are in a box: of the two bodies the one that is less far. Holds for
-/// every box inside that one.
+/// Lever of each rotary joint of a path: largest distance, mm, of any point of a body from the
+/// joint's axis, anywhere in a box; the smaller lever of the two bodies. Valid for every box inside
+/// that one.
 struct PathLevers {
-    std::array<double, kPathMax> mm{};  // in the path's order; of a linear joint 0
+    std::array<double, kPathMax> mm{};  // in the path's order; 0 for a linear joint
 };
 
 /// @param moved  [bodies] motions at the box's centre (move_bodies)
-/// Cost: nine distances of a point from a line, for each rotary joint of the path and each body.
+/// Cost: nine point-line distances for each rotary joint of the path and each body.
 [[nodiscard]] PathLevers levers_over(const Machine& machine, const JointPath& path,
                                      std::span<const Pose> moved, const PlacedBody& a,
                                      const PlacedBody& b, const JointBox& box) noexcept;
 
-/// What the joints can take anywhere in a box of these half widths, inside the one of the levers.
+/// The motion in a box of these half widths. Precondition: it is inside the box of the levers.
 /// @param half  [axes] mm or rad
 /// Cost: a sine for each rotary joint of the path.
 [[nodiscard]] PathMotion motion_by(const Machine& machine, const JointPath& path,
                                    const PathLevers& levers, std::span<const double> half) noexcept;
 
-/// Both, of one box.
+/// levers_over and motion_by for one box.
 [[nodiscard]] PathMotion motion_along(const Machine& machine, const JointPath& path,
                                       std::span<const Pose> moved, const PlacedBody& a,
                                       const PlacedBody& b, const JointBox& box) noexcept;

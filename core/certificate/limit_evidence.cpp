@@ -11,11 +11,11 @@
 namespace axg {
 namespace {
 
-constexpr double kUp = 1 + 0x1p-40;      // more than the roundings of any formula below
-constexpr double kPositionUp = 0x1p-30;  // and than those of positions up to 1e5
+constexpr double kUp = 1 + 0x1p-40;      // exceeds the roundings of any formula below
+constexpr double kPositionUp = 0x1p-30;  // exceeds the roundings of positions up to 1e5
 
 // Rest after a stop: 16 strides by the board's contract (docs/theory/certificate.md), of which
-// three samples may be lost and one is in part.
+// three samples may be lost and one is partial.
 constexpr std::uint64_t kRestStrides = 12, kRestPointsMin = 9;
 constexpr std::uint64_t kRestStridesPromised = 16;
 
@@ -23,7 +23,7 @@ constexpr double kStopStridesMax = 1e6;
 
 constexpr std::uint64_t kNever = ~std::uint64_t{0};
 
-/// How an axis moved over up to three equal times, the newest first.
+/// Travel of an axis over up to three equal times, newest first.
 struct Steps {
     std::uint32_t count = 0;
     std::array<double, 3> moved{};
@@ -40,7 +40,7 @@ double position_error(const AxisLimitRules& axis) noexcept {
     return axis.errors.position + kPositionUp;
 }
 
-/// A time that differs from its grid is a position that is off: half the jitter from a shifted one.
+/// Position error, with the latch jitter as an error: half the jitter against a shifted time grid.
 double error_at(const AxisLimitRules& axis, double speed) noexcept {
     return position_error(axis) + 0.5 * speed * axis.errors.latch_jitter_s;
 }
@@ -65,7 +65,7 @@ Steps steps_of(const LimitWatch& watch, const LimitRules& rules, std::uint32_t a
     const double longest_s = nominal_s(rules, of, strides) * (1 + of.errors.period_share);
     Steps out;
     if (of.unlimited && !(of.limits.speed_max * longest_s + 2 * error_at_most(of) < 0.99 * kPi)) {
-        return out;  // further than half a turn, the short way round may be the wrong one
+        return out;  // beyond half a turn, the direction is ambiguous
     }
     const double* newer = point_at(watch, watch.newest);
     for (std::uint64_t back = strides; out.count < 3 && back <= watch.newest; back += strides) {
@@ -79,7 +79,7 @@ Steps steps_of(const LimitWatch& watch, const LimitRules& rules, std::uint32_t a
     return out;
 }
 
-/// Largest speed anywhere in these steps, of an axis that keeps its limits.
+/// Largest speed anywhere in these steps, for an axis within its limits.
 double speed_seen(const AxisLimitRules& axis, const Steps& steps, double nominal) noexcept {
     const double shortest_s = nominal * (1 - axis.errors.period_share) - axis.errors.latch_jitter_s;
     const double longest_s = nominal * (1 + axis.errors.period_share) + axis.errors.latch_jitter_s;
@@ -94,7 +94,7 @@ double speed_seen(const AxisLimitRules& axis, const Steps& steps, double nominal
     return std::min(axis.limits.speed_max, mean + axis.limits.acceleration_max * longest_s);
 }
 
-/// What explains these steps at least: a difference is a power of the time, times a mean.
+/// The least values that explain these steps: a difference is a power of the time, times a mean.
 LimitFigures figures_of(const LimitRules& rules, const AxisLimitRules& axis, const Steps& steps,
                         std::uint32_t strides) noexcept {
     LimitFigures out;
@@ -123,17 +123,17 @@ LimitFigures figures_of(const LimitRules& rules, const AxisLimitRules& axis, con
     return out;
 }
 
-/// Whether the axis may have moved this way last. Before a stop it may have turned round.
+/// Whether the newest step may be in this direction. The axis may have reversed before a stop.
 bool may_go(const Steps& steps, double way, double error) noexcept {
     return steps.moved[0] * way >= -2 * error;
 }
 
-/// An acceleration against the motion.
+/// Whether the acceleration may be against the motion.
 bool may_brake(const Steps& steps, double error) noexcept {
     return may_go(steps, steps.second() < 0 ? 1 : -1, error);
 }
 
-/// A jerk against the motion, or any while the speed falls.
+/// Whether the jerk may be against the motion, or the speed may be falling.
 bool may_begin_braking(const Steps& steps, double error) noexcept {
     for (const double way : {1.0, -1.0}) {
         const bool is_against = steps.third() * way < 0;
@@ -145,7 +145,7 @@ bool may_begin_braking(const Steps& steps, double error) noexcept {
     return false;
 }
 
-/// The newest position, and how far it is from where the stop began.
+/// Updates the newest position and the travel since the stop began.
 void follow_position(OwnStop& stop, const AxisLimitRules& of, double position) noexcept {
     stop.moved += short_way(of, position - stop.last);
     stop.last = position;
@@ -160,7 +160,7 @@ AxisRange whole_range(const AxisLimitRules& of) noexcept {
     return range;
 }
 
-/// The axis as it was `span` strides ago or, where that point is lost, before it.
+/// Sets the state before the stop: `span` strides ago or, if that point is lost, earlier.
 void look_back(OwnStop& stop, const LimitWatch& watch, const AxisLimitRules& of, std::uint32_t axis,
                std::uint64_t span) noexcept {
     stop.start = watch.newest;
@@ -185,7 +185,7 @@ void look_back(OwnStop& stop, const LimitWatch& watch, const AxisLimitRules& of,
     }
 }
 
-/// How far free motion leads at most, one way: each term by itself is a bound.
+/// Largest travel of free motion in one direction: each term is a bound.
 double free_way(const AxisLimitRules& of, double speed, double acceleration, double t) noexcept {
     const double v = std::max(0.0, speed), a = std::max(0.0, acceleration);
     const double by_jerk = of.errors.is_jerk_limited
@@ -195,8 +195,8 @@ double free_way(const AxisLimitRules& of, double speed, double acceleration, dou
     return std::min({by_jerk, by_acceleration, of.limits.speed_max * t});
 }
 
-/// Whether no motion at these limits leads from where the stop began to where the axis is now,
-/// however hard it was stopped on the way.
+/// Whether no motion within these limits leads from the stop's start to the newest position, with
+/// any deceleration on the way.
 bool is_too_far(const OwnStop& stop, const LimitRules& rules, const AxisLimitRules& of,
                 std::uint64_t now) noexcept {
     const double t = nominal_s(rules, of, static_cast<std::uint32_t>(now - stop.start)) *
@@ -207,8 +207,8 @@ bool is_too_far(const OwnStop& stop, const LimitRules& rules, const AxisLimitRul
            -stop.moved > free_way(of, -before.speed_low, -before.acceleration_low, t) + hidden;
 }
 
-/// A stop that must have begun by now. False: the board may make none of this kind.
-/// @param span  strides of the points that show it: before the first of them there was no stop
+/// Begins a stop of the axis. False: the board is not allowed to make a harder stop.
+/// @param span  strides of the points that show it: no stop began before the first of them
 bool begin_stop(LimitWatch& watch, const LimitRules& rules, const LimitFact& cause,
                 std::uint64_t falls_from, std::uint64_t span) noexcept {
     const AxisLimitRules& of = rules.axes[cause.axis];
@@ -230,7 +230,7 @@ bool begin_stop(LimitWatch& watch, const LimitRules& rules, const LimitFact& cau
     return true;
 }
 
-/// Every point of the last strides within what errors alone make of one position.
+/// Whether position errors alone explain the differences of all points of the last strides.
 bool is_at_rest(const LimitWatch& watch, const AxisLimitRules& of, std::uint32_t axis) noexcept {
     const double* newest = point_at(watch, watch.newest);
     double low = 0, high = 0;
@@ -256,7 +256,7 @@ MachineRest rest_of(const LimitWatch& watch, const LimitRules& rules) noexcept {
     return out;
 }
 
-/// The speed falls, and rest follows in time; if not, what began the stop was no stop.
+/// Checks that the speed falls and rest follows in time. Otherwise returns the stop's cause.
 LimitFact follow_stop(LimitWatch& watch, const LimitRules& rules, std::uint32_t axis) noexcept {
     OwnStop& stop = watch.stops[axis];
     const AxisLimitRules& of = rules.axes[axis];
@@ -267,7 +267,8 @@ LimitFact follow_stop(LimitWatch& watch, const LimitRules& rules, std::uint32_t 
     if (stop.begin != now) {
         follow_position(stop, of, point_at(watch, now)[axis]);
     }
-    // Along a path, other axes may push one beyond its own limits; far round, way is not known.
+    // With `path_keeping`, other axes may force one beyond its own limits in a stop. The direction
+    // of an endless axis is uncertain if its step may reach half a turn.
     const double stride_s = nominal_s(rules, of, 4);
     const bool is_followed =
         !rules.stops_keep_path && !(of.unlimited && of.limits.speed_max * stride_s > 0.9 * kPi);
@@ -294,7 +295,8 @@ LimitFact follow_stop(LimitWatch& watch, const LimitRules& rules, std::uint32_t 
     return now > rests_by ? stop.cause : LimitFact{};
 }
 
-/// Bounds of speed that contradict each other are an excess that no single difference shows.
+/// Checks for contradicting bounds of speed or acceleration: an excess that no single difference
+/// shows.
 LimitFact judge_ranges(LimitWatch& watch, const LimitRules& rules, const MotionHistory& history,
                        std::uint32_t axis) noexcept {
     if (!ranges_hold(watch, rules, history, axis)) {
@@ -315,9 +317,8 @@ LimitFact judge_ranges(LimitWatch& watch, const LimitRules& rules, const MotionH
     return begin_stop(watch, rules, fact, falls_from, kSamplesKept) ? LimitFact{} : fact;
 }
 
-/// An axis whose count stays the same was somewhere within its errors at both ends. From a speed of
-/// at least s, no acceleration within its limits holds it there: it has to come s t - a t^2 / 2
-/// far.
+/// Checks an unchanged count: the true position is within the errors of it at both ends. From a
+/// speed of at least s, an axis within its acceleration moves at least s t - a t^2 / 2.
 LimitFact judge_resting_count(LimitWatch& watch, const LimitRules& rules, std::uint32_t axis,
                               std::uint64_t sample) noexcept {
     const AxisLimitRules& of = rules.axes[axis];
@@ -347,7 +348,7 @@ LimitFact judge_resting_count(LimitWatch& watch, const LimitRules& rules, std::u
                                                                                       : frozen;
 }
 
-/// The least speed of an axis, either way, where its count came to rest at this stride.
+/// Stores the least speed of an axis, either way, if its count begins to rest at this stride.
 void note_resting_speed(LimitWatch& watch, std::uint32_t axis) noexcept {
     const AxisRange& range = watch.believed[watch.newest % kLimitPoints][axis];
     if (watch.resting[axis].since == watch.newest) {
@@ -412,7 +413,7 @@ LimitRules limit_rules(const Machine& machine, std::span<const double> count) no
     const double period_s = machine.can.sample_us * 1e-6;
     out.axis_count = static_cast<std::uint32_t>(machine.axes.size());
     out.stride = history_stride(period_s);
-    // Seconds, as strides of a board whose clock is fast.
+    // Converts seconds to strides of a board with a fast clock.
     const double stride_s = out.stride * period_s * (1 - kPeriodShare);
     const auto strides = [&](double seconds) {
         return 1 +
@@ -424,8 +425,8 @@ LimitRules limit_rules(const Machine& machine, std::span<const double> count) no
         axis.limits = stop_limits(machine, i);
         axis.errors = sample_errors(machine, i, count[i]);
         axis.unlimited = machine.axes[i].unlimited;
-        // The softest stop of all: from the largest acceleration the jerk leads to the guaranteed
-        // deceleration, and that to rest.
+        // The softest stop: jerk-limited from the largest acceleration to the guaranteed
+        // deceleration, then at that deceleration to rest.
         const AxisLimits& l = axis.limits;
         const double ramp_s = l.acceleration_max / l.jerk_max;
         axis.ramp_strides = strides(ramp_s);
@@ -435,8 +436,8 @@ LimitRules limit_rules(const Machine& machine, std::span<const double> count) no
         ramp_most_s = std::max(ramp_most_s, full_ramp_s);
         braking_most_s = std::max(braking_most_s, braking_s);
     }
-    // Axes that stop along one path rest together: 1/R + R/J, and neither is longer than that of
-    // the axis for which it is longest.
+    // Axes that stop along one path rest together, after 1/R + R/J. Each term is at most the
+    // largest of all axes.
     out.stops_keep_path = machine.guard.promise == StopPromise::path_keeping;
     for (std::uint32_t i = 0; i < out.axis_count; ++i) {
         AxisLimitRules& axis = out.axes[i];

@@ -14,19 +14,19 @@ enum class LimitKind : std::uint8_t {
     acceleration,
     jerk,
     speed_range,         // bounds of the speed contradict each other
-    acceleration_range,  // and those of the acceleration
-    frozen_axis,         // its count stays where no motion within the limits could hold it
-    stopping,            // a stop harder than any of its drive: stopping_most_...
+    acceleration_range,  // bounds of the acceleration contradict each other
+    frozen_axis,         // its count rests though no motion within the limits could stop there
+    stopping,            // a stop harder than its drive can brake: stopping_most_...
 };
 [[nodiscard]] const char* to_text(LimitKind kind) noexcept;
 
-/// One limit that was broken.
+/// One broken limit.
 struct LimitFact {
     LimitKind kind = LimitKind::none;
     std::uint32_t axis = kNoIndex;
-    double measured = 0;  // the least value that explains the positions; of a range, the gap; of a
-                          // frozen axis, the least speed before
-    double declared = 0;  // by the machine file; of a range, or a frozen axis, 0
+    double measured = 0;  // the least value that explains the positions; for a range, the gap; for
+                          // a frozen axis, the least speed before
+    double declared = 0;  // by the machine file; 0 for a range or a frozen axis
     std::uint64_t sample = 0;
 };
 

@@ -12,18 +12,18 @@ namespace axg {
 
 namespace {
 
-constexpr double kShareUp = 0x1p-40;  // more than the roundings of any formula below
+constexpr double kShareUp = 0x1p-40;  // exceeds the roundings of any formula below
 constexpr double kUp = 1.0 + kShareUp;
-constexpr double kLongestPeriod = 1 + kPeriodShare;  // of a board, in nominal ones
-constexpr double kPositionUp = 0x1p-30;              // and than those of positions up to 1e5
-// Snapshots may be lost, and a cycle may be late: so many points behind the newest snapshot stay.
+constexpr double kLongestPeriod = 1 + kPeriodShare;  // of a board, in nominal periods
+constexpr double kPositionUp = 0x1p-30;              // exceeds the roundings of positions up to 1e5
+// Points stored behind the newest snapshot, for lost snapshots and late cycles.
 constexpr std::uint32_t kPointsBehind = 64;
-constexpr std::uint64_t kMiddlesMost = 16;  // periods to either side; farther, jerk undoes it all
+constexpr std::uint64_t kMiddlesMost = 16;  // periods to either side; farther, jerk spoils bounds
 
-/// How hard an axis can accelerate that stays within `error` of its command while neither changes
-/// its acceleration faster than `jerk`: three instants, a time L apart, say at most
-/// 4 error / L^2 + 2 jerk L. Any L will do; the best is the cube root of 4 error / jerk, which is
-/// approached from above.
+/// Largest acceleration of an axis relative to its command, if the axis stays within `error` of it
+/// and neither changes its acceleration faster than `jerk`. Three instants, a time L apart, bound
+/// it by 4 error / L^2 + 2 jerk L for any L. The best L is the cube root of 4 error / jerk; the
+/// iteration approaches it from above.
 double swing_acceleration(double error, double jerk) noexcept {
     if (!(error > 0)) {
         return 0;
@@ -70,7 +70,7 @@ std::optional<LookAheadPath> LookAheadPath::create(const Machine& machine,
     return path;
 }
 
-/// Endless axes go the short way round.
+/// Difference of two positions; at most half a turn for endless axes.
 double LookAheadPath::step(std::uint32_t axis, double from, double to) const noexcept {
     const double moved = to - from;
     return machine_->axes[axis].unlimited ? moved - 2 * kPi * std::round(moved / (2 * kPi)) : moved;
@@ -82,7 +82,7 @@ bool LookAheadPath::add(std::uint64_t sample,
         return point(sample).is_bridge || point(sample).position == position;
     }
     if (!is_empty_ && sample < first_) {
-        return true;  // older than anything that is still needed
+        return true;  // older than all stored points
     }
     const std::uint64_t gap = is_empty_ ? 1 : sample - last_;
     if (is_empty_ || gap > kPathGapMax) {
@@ -106,9 +106,9 @@ bool LookAheadPath::add(std::uint64_t sample,
     return true;
 }
 
-/// Whether axes that keep their limits can pass through the point at `sample` and those one, two
-/// and three strides before it, as far as these were sent. No path within the limits is
-/// refused: docs/theory/certificate.md, "What a path has to keep".
+/// Whether axes within their limits can pass through the point at `sample` and those one, two and
+/// three strides before it, as far as the board sent these. Rejects no path within the limits:
+/// docs/theory/certificate.md, "What a path has to keep".
 bool LookAheadPath::is_possible(std::uint64_t sample, std::uint32_t stride) const noexcept {
     const std::uint32_t orders_most = machine_->guard.free_jerk_limited ? 3 : 2;
     std::uint32_t orders = 0;
@@ -141,7 +141,7 @@ bool LookAheadPath::is_possible(std::uint64_t sample, std::uint32_t stride) cons
 }
 
 bool LookAheadPath::extend(const PathPoints& points) noexcept {
-    // Single periods show a jump; beside the jerk of a longer stride the counts are 1/512 as much.
+    // Single periods show a jump; over a stride of 8, counts are 1/512 as large against the jerk.
     constexpr std::uint32_t kLongStride = 8;
     static_assert(3 * kLongStride < kPointsBehind);
     for (const bool is_before : {true, false}) {
@@ -167,20 +167,20 @@ bool LookAheadPath::note_path(const PathPoints& points) noexcept {
         return true;
     }
     clear();
-    if (!extend(points)) {  // nor can the two of this frame follow each other
+    if (!extend(points)) {  // the two points of this frame contradict the limits, too
         clear();
     }
     return false;
 }
 
-/// How far the path may lie off the chord that ends at `sample`.
+/// Largest distance of the path from the chord that ends at `sample`.
 double LookAheadPath::bulge(std::uint32_t axis, std::uint64_t sample) const noexcept {
     const double time = point(sample).gap * period_s_ * kLongestPeriod;
     return machine_->axes[axis].acceleration_max * time * time / 8 * kUp;
 }
 
-/// Largest |q'| in the step that ends at `sample`, by the board's timer: its mean, and what the
-/// speed may change by in half of the chord's time.
+/// Largest |q'| in the step that ends at `sample`, by the board's timer: its mean, plus the largest
+/// change of speed in half of the chord's time.
 double LookAheadPath::speed_in_step(std::uint32_t axis, std::uint64_t sample) const noexcept {
     const Axis& promised = machine_->axes[axis];
     const Point &to = point(sample), &from = point(sample - 1);
@@ -200,16 +200,15 @@ double LookAheadPath::speed_in_step(std::uint32_t axis, std::uint64_t sample) co
     return std::min(speed, promised.speed_max * kLongestPeriod) * kUp;
 }
 
-/// The points that a position may have been latched between, by its age.
+/// First and last point between which the board latched a position, by its age.
 LookAheadPath::Latched LookAheadPath::latched_at(std::uint64_t sample) const noexcept {
     const ValueAge age = machine_->can.latched_age;
     const std::uint32_t period_us = machine_->can.sample_us;
     const std::uint64_t most = (std::uint64_t{age.most_us} + period_us - 1) / period_us;
-    return {sample - most, sample - age.least_us / period_us};  // before 0 nothing is held
+    return {sample - most, sample - age.least_us / period_us};  // no points before 0
 }
 
-/// How far a position is from every one of the path in there, along the chords. Of no number, no
-/// number.
+/// Distance of a position from the chords between these points; 0 on them. NaN for NaN.
 double LookAheadPath::off_path(std::uint32_t axis, double position,
                                const Latched& at) const noexcept {
     double off = step(axis, point(at.first).position[axis], position);  // unwrapped from here on
@@ -229,7 +228,7 @@ bool LookAheadPath::keeps_to(const AxisSnapshot& snapshot) const noexcept {
         return true;
     }
     const bool has_neighbours = holds(at.first - 1) && holds(at.last + 1);
-    // What the period may be off moves the points that an age counts back to.
+    // An error of the period shifts the instant that an age counts back to.
     const double loose_s =
         machine_->guard.latch_jitter_s + kPeriodShare * machine_->can.latched_age.most_us * 1e-6;
     for (std::uint32_t i = 0; i < machine_->axes.size(); ++i) {
@@ -242,7 +241,7 @@ bool LookAheadPath::keeps_to(const AxisSnapshot& snapshot) const noexcept {
             const bool is_on_chord = k > at.first || point(k).is_bridge;
             bridge = is_on_chord ? std::max(bridge, bulge(i, k)) : bridge;
         }
-        // Half a count of either frame, and what a position on the wire is off.
+        // Includes half a count of either frame, and the error of a position on the wire.
         const double allowed = axis.following_error + axis.position_error + options_.count[i] +
                                speed * loose_s + bridge + kPositionUp;
         if (!(off_path(i, snapshot.position[i], at) <= allowed)) {
@@ -279,7 +278,7 @@ void LookAheadPath::cut(std::uint64_t sample, double end,
     AXG_ASSERT(holds(sample) && end >= 0);
     constexpr std::uint32_t kFirstLeaf = kPathLeaves - 1;
     std::array<double, kAxesMax> from = at(sample), low, high;  // unwrapped from here on
-    std::uint64_t ahead = 1;                                    // the step that `from` lies in
+    std::uint64_t ahead = 1;                                    // the step that contains `from`
     const auto count = static_cast<std::uint32_t>(machine_->axes.size());
     double begin = 0;
     for (std::uint32_t leaf = 0; leaf < kPathLeaves; ++leaf) {
@@ -311,7 +310,7 @@ void LookAheadPath::cut(std::uint64_t sample, double end,
     join(out);
 }
 
-/// Each parent around its children; the leaves stand at the end.
+/// Sets each parent to enclose its children; the leaves are at the end.
 void LookAheadPath::join(std::span<JointBox> pieces) const noexcept {
     for (std::size_t node = pieces.size() / 2; node-- > 0;) {
         const JointBox &a = pieces[2 * node + 1], &b = pieces[2 * node + 2];
@@ -336,8 +335,8 @@ bool LookAheadPath::is_middle(std::uint64_t sample) const noexcept {
     return is_sent;
 }
 
-/// Those that say most about the step that ends at `sample`: its beginning, or where frames were
-/// lost about it, the nearest on either side.
+/// The points with the tightest bounds for the step that ends at `sample`: its beginning or, if
+/// frames near it were lost, the nearest on either side.
 LookAheadPath::Middles LookAheadPath::middles_about(std::uint64_t sample) const noexcept {
     Middles out;
     const auto take = [&](std::uint64_t middle) {
@@ -357,15 +356,15 @@ LookAheadPath::Middles LookAheadPath::middles_about(std::uint64_t sample) const 
     return out;
 }
 
-/// The second difference over two periods either way is a mean of the acceleration there, weighted
-/// by a hat around `middle`.
+/// Bounds a mean of the acceleration, weighted by a hat of two periods either way around `middle`:
+/// the second difference.
 LookAheadPath::Span LookAheadPath::mean_acceleration(std::uint32_t axis,
                                                      std::uint64_t middle) const noexcept {
     const double moved = step(axis, point(middle).position[axis], point(middle + 2).position[axis]),
                  before =
                      step(axis, point(middle - 2).position[axis], point(middle).position[axis]);
     const double square = 4 * period_s_ * period_s_, count = 2 * options_.count[axis];
-    const auto stretched = [square](double second_difference) {  // by the share of the period
+    const auto stretched = [square](double second_difference) {  // by the error of the period
         constexpr double kShort = (1 - kPeriodShare) * (1 - kPeriodShare),
                          kLong = (1 + kPeriodShare) * (1 + kPeriodShare);
         return Span{second_difference / (square * (second_difference < 0 ? kShort : kLong)),
@@ -374,7 +373,7 @@ LookAheadPath::Span LookAheadPath::mean_acceleration(std::uint32_t axis,
     return {stretched(moved - before - count).low, stretched(moved - before + count).high};
 }
 
-/// What the axis itself may accelerate by in the chord that the step ending at `sample` lies in.
+/// Acceleration of the axis itself in the chord that contains the step ending at `sample`.
 LookAheadPath::Span LookAheadPath::acceleration_in_step(std::uint32_t axis, std::uint64_t sample,
                                                         const Middles& middles) const noexcept {
     const Axis& promised = machine_->axes[axis];
@@ -383,12 +382,12 @@ LookAheadPath::Span LookAheadPath::acceleration_in_step(std::uint32_t axis, std:
     if (!machine_->guard.free_jerk_limited) {
         return out;
     }
-    const double gap = point(sample).gap;  // the chord ends so much later, or began so much before
+    const double gap = point(sample).gap;  // the chord ends or began at most a gap away
     for (std::uint32_t i = 0; i < middles.count; ++i) {
         const double after = static_cast<double>(sample) - static_cast<double>(middles.sample[i]);
         const double away = std::max(std::fabs(after + gap - 1), std::fabs(after - gap));
-        // A hat of two periods either way is at most 0.3 periods more than its middle from an
-        // instant that is a period or more away.
+        // The hat's mean distance from an instant one period or more from its middle exceeds the
+        // distance of the middle by at most 0.3 periods.
         const double drift =
             (away + 0.3) * promised.jerk_max * period_s_ * kLongestPeriod + swing_[axis];
         const Span mean = mean_acceleration(axis, middles.sample[i]);
@@ -396,10 +395,10 @@ LookAheadPath::Span LookAheadPath::acceleration_in_step(std::uint32_t axis, std:
         out.low = std::max(out.low, low - kShareUp * std::fabs(low));
         out.high = std::min(out.high, high + kShareUp * std::fabs(high));
     }
-    return out.low <= out.high ? out : Span{-a, a};  // no axis within its limits goes like that
+    return out.low <= out.high ? out : Span{-a, a};  // contradiction: the axis broke its limits
 }
 
-/// What the axis may be doing between two instants of the step that ends at `sample`.
+/// Range of the axis between two instants of the step that ends at `sample`.
 /// @param from, to  shares of the step
 AxisRange LookAheadPath::range_in_step(std::uint32_t axis, std::uint64_t sample,
                                        const Middles& middles, double from,
@@ -415,8 +414,8 @@ AxisRange LookAheadPath::range_in_step(std::uint32_t axis, std::uint64_t sample,
     out.high = std::max(x, y) + wide;
     const Span acceleration = acceleration_in_step(axis, sample, middles);
     const double most = std::max(std::fabs(acceleration.low), std::fabs(acceleration.high));
-    // Off the path by no more than the following error, and accelerations that differ by no more
-    // than twice the largest: docs/theory/certificate.md, "Each axis by itself".
+    // The axis is within the following error of the path, and their accelerations differ by at most
+    // twice the largest: docs/theory/certificate.md, "Each axis by itself".
     const double off = 0.5 * most * end.gap * period_s_ * (1 + kPeriodShare) +
                        2 * std::sqrt(2 * a * promised.following_error);
     const double least = std::fabs(moved) - count, largest = std::fabs(moved) + count;

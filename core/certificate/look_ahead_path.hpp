@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The look-ahead path that a board sends: the commanded position of every axis at the instants to
-// come, one a sample period. From it comes how far along that path a stop can still go, and boxes
-// around every position on the way. Pure; everything is reserved at create. mm and s, or rad and s.
+// The look-ahead path that a board sends: the commanded position of every axis at future instants,
+// one per sample period. Computes how far along that path a stop can still go, and boxes around
+// every position on the way. Pure; reserves all memory at create. mm and s, or rad and s.
 // Source: docs/theory/certificate.md, "Look-ahead path".
 #pragma once
 
@@ -22,14 +22,14 @@ namespace axg {
 
 inline constexpr std::uint32_t kLookAheadSamplesMin = 4,
                                kLookAheadSamplesMax = 1024;  // periods that a board looks ahead
-inline constexpr std::uint32_t kPathGapMax = 64;             // periods between two points, bridged
-inline constexpr std::uint32_t kPathLeaves = 64;             // pieces that a stretch is cut into
+inline constexpr std::uint32_t kPathGapMax = 64;             // longest bridged gap, periods
+inline constexpr std::uint32_t kPathLeaves = 64;             // smallest pieces of a stretch
 inline constexpr std::uint32_t kPathPieces = 2 * kPathLeaves - 1;
-inline constexpr std::uint32_t kReachLeaves = 8;  // and the starts of stops of single axes
+inline constexpr std::uint32_t kReachLeaves = 8;  // smallest pieces of a reach
 inline constexpr std::uint32_t kReachPieces = 2 * kReachLeaves - 1;
 
-/// What one frame sends: the commanded positions at two instants in a row, so that one frame
-/// lost costs nothing.
+/// Contents of one frame: the commanded positions at two successive instants, so that the loss of
+/// one frame loses no point.
 struct PathPoints {
     std::uint64_t sample = 0;                 // of `position`
     std::array<double, kAxesMax> position{};  // endless axes in [0, one turn)
@@ -41,7 +41,7 @@ struct PathOptions {
     std::array<double, kAxesMax> count{};  // mm or rad of one count of the frames
 };
 
-/// How much of the path a stop can still cover, in sample periods after the newest snapshot.
+/// The part of the path that a stop can still cover, in sample periods after the newest snapshot.
 struct PathStretch {
     bool is_known = false;  // false: the look-ahead path ends before a stop must have ended
     double end = 0;
@@ -49,16 +49,16 @@ struct PathStretch {
 
 class LookAheadPath {
   public:
-    /// `machine` must outlive it. Empty: memory ran out.
+    /// `machine` must outlive it. Empty: out of memory.
     [[nodiscard]] static std::optional<LookAheadPath> create(const Machine& machine,
                                                              const PathOptions& options);
 
-    /// Nothing is known of the path any more.
+    /// Discards the path.
     void clear() noexcept { is_empty_ = true; }
 
-    /// Adds the points of a frame. Lost points are bridged. False: another position was
-    /// sent for that instant before, or no axis that keeps its limits passes through these
-    /// points; what was known is forgotten. Cost: one look at the last 24 points of each axis.
+    /// Adds the points of a frame and bridges lost points. False: the board sent another position
+    /// for that instant before, or no axis within its limits can pass through these points;
+    /// discards the earlier path. Cost: one pass over the last 24 points of each axis.
     bool note_path(const PathPoints& points) noexcept;
 
     [[nodiscard]] bool holds(std::uint64_t sample) const noexcept {
@@ -69,27 +69,27 @@ class LookAheadPath {
         return ring_[sample % ring_.size()].position;
     }
 
-    /// Everything an axis may be doing a period before the last point, where there are more points.
+    /// Range of position, speed and acceleration of an axis one period before the last point.
+    /// Empty: fewer than three points.
     [[nodiscard]] std::optional<AxisRange> end(std::uint32_t axis) const noexcept;
 
-    /// Whether the axes are at the announced positions: within the following error,
-    /// what a position may be off, and the way of the latch jitter. True where nothing was
-    /// sent for that instant.
+    /// Whether the axes are at the announced positions, within the following error, the position
+    /// error and the motion during the latch jitter. True if the path does not cover that instant.
     [[nodiscard]] bool keeps_to(const AxisSnapshot& snapshot) const noexcept;
 
-    /// How far a stop can go that begins up to `free_s` after the instant of `sample`.
-    /// Cost: one look at each point up to there.
+    /// The end of a stop that begins up to `free_s` after the instant of `sample`.
+    /// Cost: one pass over the points up to that end.
     [[nodiscard]] PathStretch stretch(std::uint64_t sample, double free_s) const noexcept;
 
     /// Boxes around every position that the axes may have while the commands run from `sample` to
     /// `end` periods later. The children of piece i are 2 i + 1 and 2 i + 2; together they cover
-    /// it. Precondition: stretch(sample, ..) was known and ended at `end`.
+    /// it. Precondition: stretch(sample, ..) returned is_known and this `end`.
     void cut(std::uint64_t sample, double end, std::span<JointBox, kPathPieces> out) const noexcept;
 
-    /// Boxes around every position up to standstill where the axes follow the commands until a stop
-    /// begins, up to `free_s` after the instant of `sample`, and then brake each by itself. The
-    /// pieces as above, of the instants at which the stop may begin. False: the path is not known
-    /// that far, and `out` is not touched.
+    /// Boxes around every position up to standstill if the axes follow the commands until a stop
+    /// begins, up to `free_s` after the instant of `sample`, and then brake independently. The tree
+    /// is as above, over the instants at which the stop may begin. False: the path ends earlier;
+    /// `out` is unchanged.
     [[nodiscard]] bool reach(std::uint64_t sample, double free_s,
                              std::span<JointBox, kReachPieces> out) const noexcept;
 
@@ -98,7 +98,7 @@ class LookAheadPath {
   private:
     struct Point {
         std::array<double, kAxesMax> position;
-        std::uint32_t gap;  // periods of the chord that ends here or runs through
+        std::uint32_t gap;  // periods of the chord that ends at or contains this point
         bool is_bridge;
     };
     struct Ratios {
@@ -128,7 +128,7 @@ class LookAheadPath {
     struct Span {
         double low, high;
     };
-    /// Up to two points with two of their neighbours on either side, all of them sent.
+    /// Up to two points whose two neighbours on either side were all sent.
     struct Middles {
         std::uint32_t count = 0;
         std::array<std::uint64_t, 2> sample{};
@@ -147,16 +147,16 @@ class LookAheadPath {
     const Machine* machine_;
     PathOptions options_;
     double period_s_ = 0;
-    std::array<double, kAxesMax> swing_{};  // acceleration of an axis about its commands, at most
+    std::array<double, kAxesMax> swing_{};  // largest acceleration relative to the commands
     Arena arena_;
     std::span<Point> ring_;
     bool is_empty_ = true;
     std::uint64_t first_ = 0, last_ = 0;
 };
 
-/// How much of the path, in s of it, a stop covers from rate 1 to standstill: the rate falls with a
-/// jerk of 1 / jerk_ratio to a deceleration of 1 / deceleration_ratio. Never less for more of
-/// either.
+/// Length of path, in s of path time, that a stop covers from rate 1 to standstill. The rate falls
+/// with a jerk of 1 / jerk_ratio up to a deceleration of 1 / deceleration_ratio. Never decreases
+/// when a ratio increases.
 [[nodiscard]] double path_braking_s(double deceleration_ratio, double jerk_ratio) noexcept;
 
 }  // namespace axg

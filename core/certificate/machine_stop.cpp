@@ -4,7 +4,7 @@
 namespace axg {
 namespace {
 
-constexpr std::uint64_t kSeenRestStrides = 16;  // until rest is seen as such
+constexpr std::uint64_t kSeenRestStrides = 16;  // needed to detect rest
 
 }  // namespace
 
@@ -28,7 +28,7 @@ LimitFact follow_machine_stop(MachineStop& stop, const MachineStopRules& rules, 
         stop = {};
         return {};
     }
-    // A command that freezes stops all counts at once: no drive braked, and none has to.
+    // A frozen command stops all counts at once: no drive brakes, so no braking time is allowed.
     const std::uint64_t braking = stop.is_too_hard ? 0 : rules.braking_strides;
     const bool is_overdue =
         stride > stop.begin + braking + rules.reaction_strides + kSeenRestStrides;

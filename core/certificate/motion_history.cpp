@@ -11,12 +11,12 @@ namespace axg {
 
 namespace {
 
-constexpr double kShareUp = 0x1p-40;     // more than the roundings of any formula below
-constexpr double kPositionUp = 0x1p-30;  // and than those of positions up to 1e5
-constexpr double kStrideS = 1e-3;        // closer samples say little about acceleration
-constexpr double kLooseShare = 0.05;     // of a jitter that hides more than a count does
+constexpr double kShareUp = 0x1p-40;     // exceeds the roundings of any formula below
+constexpr double kPositionUp = 0x1p-30;  // exceeds the roundings of positions up to 1e5
+constexpr double kStrideS = 1e-3;        // closer samples yield loose acceleration bounds
+constexpr double kLooseShare = 0.05;     // a larger share of jitter hides more than a count does
 
-/// What the axis is promised to keep to.
+/// The promised limits of the axis.
 struct Promised {
     double speed_max, acceleration_max, jerk_max;
     bool unlimited;
@@ -35,14 +35,14 @@ Span widened(Span s) noexcept {
     return {s.low - kShareUp * std::fabs(s.low), s.high + kShareUp * std::fabs(s.high)};
 }
 
-/// What an older snapshot says: how far the axis came since, and in what time.
+/// Travel of the axis since an older snapshot, and bounds of the time it needed.
 struct Since {
     double moved;
     Span time_s;
     double nominal_s;
 };
 
-/// False: nothing for sure.
+/// False: the snapshot yields no bound.
 bool since(const MotionHistory& h, std::uint32_t back, std::uint32_t axis, const Promised& promised,
            const SampleErrors& errors, Since& out) noexcept {
     const double nominal = static_cast<double>(h.sample[0] - h.sample[back]) * errors.period_s;
@@ -52,7 +52,7 @@ bool since(const MotionHistory& h, std::uint32_t back, std::uint32_t axis, const
     out.moved = h.position[0][axis] - h.position[back][axis];
     if (promised.unlimited) {
         out.moved -= 2 * kPi * std::round(out.moved / (2 * kPi));
-        // Further than half a turn, and the short way round may be the wrong one.
+        // Beyond half a turn, the direction is ambiguous.
         if (!(promised.speed_max * out.time_s.high + 2 * errors.position < 0.99 * kPi)) {
             return false;
         }
@@ -60,8 +60,8 @@ bool since(const MotionHistory& h, std::uint32_t back, std::uint32_t axis, const
     return out.time_s.low > 0.25 * nominal;
 }
 
-/// Largest speed at the newest sample. The smallest is that of the mirrored motion.
-/// @param acceleration  at most, at the newest sample
+/// Largest speed at the newest sample. Mirror the motion to get the smallest.
+/// @param acceleration  upper bound at the newest sample
 double speed_high(const Since& s, double acceleration, const Promised& promised,
                   const SampleErrors& errors) noexcept {
     const double far = s.moved + 2 * errors.position;
@@ -94,8 +94,8 @@ Span speed_of(const MotionHistory& h, std::uint32_t axis, Span acceleration,
     return out;
 }
 
-/// Largest speed in the time of these samples, and a jitter before and after. Over two strides the
-/// axis had its mean speed at some instant, and any other is not farther from it than they last.
+/// Largest speed during these samples, and a jitter before and after. Within two strides the axis
+/// had their mean speed at some instant; every other instant is at most their duration away.
 double fastest_seen(const MotionHistory& h, std::uint32_t back, std::uint32_t axis,
                     const Promised& promised, const SampleErrors& errors) noexcept {
     double fastest = 0;
@@ -116,18 +116,18 @@ double fastest_seen(const MotionHistory& h, std::uint32_t back, std::uint32_t ax
     return fastest + promised.acceleration_max * errors.latch_jitter_s;
 }
 
-/// From three samples: the second divided difference is a mean of the acceleration.
+/// Bounds from three samples: the second divided difference is a mean of the acceleration.
 Span acceleration_from(const Since& one, const Since& two, double fastest, const Promised& promised,
                        const SampleErrors& errors) noexcept {
     const double d1 = one.nominal_s, d2 = two.nominal_s, between = d2 - d1;
     const double mean = 2 * (one.moved / d1 - (two.moved - one.moved) / between) / d2;
-    // A sample latched off its instant is a position that is off.
+    // Counts an error of the latch instant as an error of the position.
     const double speed = std::min(promised.speed_max, fastest);
     const double older = errors.position + speed * errors.latch_jitter_s;
     const double off =
         2 / d2 * (errors.position / d1 + older * (1 / d1 + 1 / between) + older / between);
     const double drift = promised.jerk_max * (one.time_s.high + two.time_s.high) / 3;
-    // The instants are stretched alike: d1 and d2 by up to the share, so the mean by its square.
+    // One period error scales d1 and d2 alike by up to the share, and the mean by its square.
     const double scale_low = 1 / ((1 + errors.period_share) * (1 + errors.period_share));
     const double scale_high = 1 / ((1 - errors.period_share) * (1 - errors.period_share));
     const double low = mean - off, high = mean + off;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Speed and acceleration of each axis, bounded from the positions of the last samples: frames carry
-// no speed. Pure, no allocation; mm and s, or rad and s. Source: docs/theory/certificate.md, "What
-// positions say about speed".
+// Bounds the speed and acceleration of each axis from the positions of the last samples: frames
+// carry no speed. Pure, no allocation; mm and s, or rad and s.
+// Source: docs/theory/certificate.md, "Speed from positions".
 #pragma once
 
 #include <array>
@@ -14,12 +14,12 @@
 
 namespace axg {
 
-/// The period of the board is `sample_us` to this share (docs/reference/protocol.md, rule 6).
+/// Largest relative error of the board's period `sample_us` (docs/reference/protocol.md, rule 6).
 inline constexpr double kPeriodShare = 0.01;
 
-inline constexpr std::uint32_t kSamplesKept = 17;  // the newest, and 16 behind it
+inline constexpr std::uint32_t kSamplesKept = 17;  // the newest and 16 older ones
 
-/// The last snapshots, newest first, at least a stride of samples apart but for the newest.
+/// The last snapshots, newest first, at least a stride of samples apart except the newest.
 struct MotionHistory {
     std::uint32_t count = 0;
     std::array<std::uint64_t, kSamplesKept> sample{};
@@ -27,40 +27,40 @@ struct MotionHistory {
 };
 static_assert(std::is_trivially_copyable_v<MotionHistory>);
 
-/// Adds a snapshot. One that is not newer than the newest: everything before it is forgotten.
-/// @param stride  samples, at least 1: where they come faster than motion tells more
+/// Adds a snapshot. Clears the history first if the snapshot is not newer than the newest.
+/// @param stride  samples between stored snapshots, at least 1 (history_stride)
 void note_snapshot(MotionHistory& history, const AxisSnapshot& snapshot,
                    std::uint32_t stride) noexcept;
 
-/// How well the instants and the positions are known.
+/// Error bounds of the instants and positions of samples.
 struct SampleErrors {
     double period_s = 0;           // nominal
-    double period_share = 0;       // the period may be off by this share, all samples alike
-    double latch_jitter_s = 0;     // and the time between the positions of two samples by this
+    double period_share = 0;       // largest relative error of the period, equal for all samples
+    double latch_jitter_s = 0;     // largest error of the time between two samples' positions
     double position = 0;           // of a reported position against the true one at its latch
-    bool is_jerk_limited = false;  // the axis keeps jerk_max in free motion too
+    bool is_jerk_limited = false;  // jerk_max also limits free motion
 };
 
-/// A history at a closer spacing would tell little about acceleration: samples in one stride, 1 ms
-/// or the next period.
+/// Samples in one stride: 1 ms rounded to whole periods, at least one. Closer samples yield loose
+/// bounds of the acceleration.
 [[nodiscard]] std::uint32_t history_stride(double period_s) noexcept;
 
-/// The range of an axis, and whether the snapshots contradict what the axis is promised to keep to.
+/// The range of an axis, and whether the snapshots contradict the promised limits.
 struct RangeFinding {
-    AxisRange range;  // the whole range where they do
-    // By how much the largest speed (acceleration) is below the smallest one; 0: no contradiction.
+    AxisRange range;  // the limits themselves if the snapshots contradict them
+    // Excess of the lower bound of speed (acceleration) over the upper one; 0: no contradiction.
     double speed_gap = 0, acceleration_gap = 0;
 };
 
-/// @param is_unlimited  an endless axis, followed the short way round
+/// @param is_unlimited  an endless axis: a difference of positions is at most half a turn
 /// Precondition: a snapshot was noted.
 [[nodiscard]] RangeFinding find_range(const MotionHistory& history, std::uint32_t axis,
                                       const AxisLimits& limits, bool is_unlimited,
                                       const SampleErrors& errors) noexcept;
 
-/// Everything the axis may be doing at the instant of the newest snapshot; its whole range where
-/// the snapshots tell nothing, or contradict what the axis is promised to keep to. Precondition: a
-/// snapshot was noted.
+/// Bounds of position, speed and acceleration at the instant of the newest snapshot. Returns the
+/// whole range of speed and acceleration if the snapshots do not bound them, or contradict the
+/// promised limits. Precondition: a snapshot was noted.
 [[nodiscard]] AxisRange range_of(const MotionHistory& history, std::uint32_t axis,
                                  const Axis& promised, const SampleErrors& errors) noexcept;
 

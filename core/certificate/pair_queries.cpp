@@ -92,7 +92,7 @@ void make_contact_queries(const Machine& machine, const AxisSnapshot& snapshot, 
         if (mesh_a == kNoIndex || mesh_b == kNoIndex) {
             continue;
         }
-        // The snapshot is in the travel, or it could not be queried.
+        // judge_snapshot has rejected snapshots outside the travel.
         const TravelProof known =
             scope == QueryScope::needed ? travel_proof(machine, proof) : TravelProof{};
         const bool is_known = known.distance_mm >= pair.margin_mm;
@@ -104,7 +104,7 @@ void make_contact_queries(const Machine& machine, const AxisSnapshot& snapshot, 
         q.mesh_a = is_known ? pruned_mesh_index(machine, known.surface_a, mesh_a) : mesh_a;
         q.mesh_b = is_known ? pruned_mesh_index(machine, known.surface_b, mesh_b) : mesh_b;
         q.r_mm = pair.margin_mm;
-        // Not 0, so that core/collision/containment.hpp may go on from the result.
+        // Must not be 0: core/collision/containment.hpp continues from the result.
         q.pose_error_mm = kPlaceErrorMm + deviation_of(machine, pair.a, out.tool) +
                           deviation_of(machine, pair.b, out.tool);
         q.pose = relative_pose(placed[pair.a], placed[pair.b]);

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The n that a longer permit is proven with: few, so that the longest that fits is found soon. The
-// first stage asks of each pair one box for the least n and one for a longer one. What is proven
-// with the longer is proven with every smaller: its motions include theirs. If all pairs are, the
-// permit has the longer n, else the least; then comes the next, up after a proof, down after none.
-// An n that failed right after a shorter one was proven is left alone for a while: else, where the
-// longest lies between two, every second permit would be as short as the least.
+// The values of n for longer permits: few, so that the search finds the longest proven n soon.
+// Stage 1 queries one box of each pair for the least n and one for a longer n. A proof for the
+// longer n covers every smaller n: its motions include theirs. If it succeeds for all pairs, the
+// permit has the longer n, else the least. The next cycle tries the next higher n after a proof,
+// else the next lower. An n that fails right after the proof of a shorter one is not tried for
+// kCyclesBarred cycles. Otherwise every second permit would have the least n whenever the longest
+// provable n is between two values.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +16,8 @@
 
 namespace axg {
 
-/// With an enforced cap every cycle tries the same longer n, and the cap falls where it fails: ten
-/// samples lose next to no permit by chance (docs/reference/machine-file.md).
+/// With an enforced cap every cycle tries the same longer n, and the cap falls if that fails. With
+/// ten samples, chance loses almost no permit (docs/reference/machine-file.md).
 inline constexpr std::uint8_t kSamplesWork = 10;
 [[nodiscard]] constexpr std::uint8_t samples_work(PermitSamples range) noexcept {
     return kSamplesWork > range.least ? std::min(kSamplesWork, range.most) : range.most;
@@ -24,7 +25,7 @@ inline constexpr std::uint8_t kSamplesWork = 10;
 
 inline constexpr std::array<std::uint8_t, 7> kSamplesTried{4, 5, 6, 8, 10, 12, 15};
 
-/// The next higher, the most at last.
+/// The next higher n, at most range.most.
 [[nodiscard]] constexpr std::uint8_t samples_above(PermitSamples range,
                                                    std::uint8_t samples) noexcept {
     for (const std::uint8_t tried : kSamplesTried) {
@@ -35,7 +36,7 @@ inline constexpr std::array<std::uint8_t, 7> kSamplesTried{4, 5, 6, 8, 10, 12, 1
     return range.most;
 }
 
-/// The next lower, never `least` where there is one above it.
+/// The next lower n; returns range.least only if there is no n above it.
 [[nodiscard]] constexpr std::uint8_t samples_below(PermitSamples range,
                                                    std::uint8_t samples) noexcept {
     std::uint8_t next = range.least;
@@ -45,15 +46,15 @@ inline constexpr std::array<std::uint8_t, 7> kSamplesTried{4, 5, 6, 8, 10, 12, 1
     return next > range.least ? next : samples_above(range, range.least);
 }
 
-/// So many cycles an n that was one step too many is not tried again.
+/// Cycles without a new attempt of an n that failed right after a shorter one was proven.
 inline constexpr std::uint8_t kCyclesBarred = 32;
 
 struct PermitLadder {
-    std::uint8_t samples = 0;  // the longer n that a cycle tries
+    std::uint8_t samples = 0;  // the longer n that the cycle tries
     std::uint8_t barred = 0, cycles_barred = 0;
-    bool is_climb = false;  // the cycle before proved a shorter one
+    bool is_climb = false;  // the previous cycle proved a shorter n
 
-    /// After a cycle that tried it.
+    /// State after a cycle that tried `samples`.
     [[nodiscard]] constexpr PermitLadder next(PermitSamples range, bool is_proven) const noexcept {
         PermitLadder out = *this;
         out.cycles_barred = std::max<std::uint8_t>(cycles_barred, 1) - 1;

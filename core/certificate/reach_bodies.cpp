@@ -10,9 +10,9 @@
 namespace axg {
 namespace {
 
-constexpr double kUp = 1.0 + 0x1p-40;  // more than the roundings of the formulas below
+constexpr double kUp = 1.0 + 0x1p-40;  // exceeds the roundings of the formulas below
 
-/// Largest distance of a box' corners, placed, from a line.
+/// Largest distance of a placed box' corners from a line.
 double lever_mm(const BodyExtent& extent, const Pose& placed, Vec3d on_line, Vec3d along) noexcept {
     double most_mm = 0;
     for (unsigned corner = 0; corner < 8; ++corner) {
@@ -32,7 +32,7 @@ ReachBody reach_body(const Machine& machine, std::uint32_t body, const Pose& at,
     std::array<Pose, kBodiesMax> moved;
     move_bodies(machine, box.centre, moved);
     ReachBody out{.body = body, .placed = compose(moved[body], at)};
-    // From the body's own joint to the outermost: those before have moved it within `moves_mm`.
+    // From the body's own joint to the outermost: earlier joints move it by at most `moves_mm`.
     for (std::uint32_t carrier = body; carrier != kNoIndex;
          carrier = machine.bodies[carrier].parent) {
         const Joint& joint = machine.bodies[carrier].joint;
@@ -44,7 +44,7 @@ ReachBody reach_body(const Machine& machine, std::uint32_t body, const Pose& at,
             out.moves_mm += half * kUp;
             continue;
         }
-        // A turn about the axis leaves the axis where it is.
+        // A turn about the axis does not move the axis.
         const Vec3d on_line = apply(moved[carrier], joint.pivot_mm);
         const Vec3d along = rotate(moved[carrier], joint.direction);
         const double lever = lever_mm(extent, out.placed, on_line, along) + out.moves_mm;

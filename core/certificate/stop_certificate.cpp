@@ -26,7 +26,7 @@ JointBoxTask pair_task(const Machine& machine, std::uint32_t pair, std::uint32_t
                        std::span<const BodyExtent> extents) noexcept {
     const Pair& p = machine.pairs[pair];
     JointBoxTask task;
-    // Levers are those of the surface that is queried: nothing else has to stay away.
+    // Uses the extent of the queried surface for levers: no other surface has to stay away.
     const auto place = [&](std::uint32_t body, std::uint32_t against, std::uint32_t& mesh, Pose& at,
                            const BodyExtent*& extent) {
         const bool is_tool = machine.bodies[body].is_tool;
@@ -142,7 +142,7 @@ void StopCertificate::note(const AxisSnapshot& snapshot, bool is_first) noexcept
     if (!path_) {
         return;
     }
-    if (is_first || jog_.is_on()) {  // a jog is no part of a path
+    if (is_first || jog_.is_on()) {  // a jog is not part of a path
         path_->clear();
         took_back_ = took_back_ && !jog_.is_on();
     }
@@ -185,9 +185,9 @@ void StopCertificate::note_jog(bool is_first) noexcept {
     }
 }
 
-/// A board may say the number of the next tool while the last one is still in the spindle: until no
-/// permit from before is in force, both count; and if the number changes again, all of them. An
-/// older permit may end after a newer one, so the longest counts, whatever was sent.
+/// A board may report the number of the next tool while the last one is still in the spindle. Both
+/// count until no earlier permit is in force; if the number changes again, all of them count. An
+/// older permit may end after a newer one, so this assumes the longest permit, whatever was sent.
 void StopCertificate::note_tool(const AxisSnapshot& before, bool is_first) noexcept {
     if (is_first) {
         tool_until_ = {};
@@ -254,7 +254,7 @@ JointBox StopCertificate::reach_within(std::uint32_t samples,
     return box;
 }
 
-/// All axes where they stand, and the one of the jog as far as it may get.
+/// Box of all axes at their present positions, and of the jog's axis over its whole reach.
 JointBox StopCertificate::jog_box(std::uint32_t samples) const noexcept {
     JointBox box;
     for (std::uint32_t i = 0; i < machine_->axes.size(); ++i) {
@@ -273,7 +273,7 @@ JointBox StopCertificate::jog_box(std::uint32_t samples) const noexcept {
     return box;
 }
 
-/// What each pair keeps in this jog: found where it began, and kept to its end.
+/// Determines each pair's floor at the start of a jog; it applies to the jog's end.
 void StopCertificate::find_floors(const Engine& engine) noexcept {
     std::array<Pose, kBodiesMax> moved;
     move_bodies(*machine_, snapshot_.position, moved);
@@ -296,14 +296,14 @@ void StopCertificate::find_floors(const Engine& engine) noexcept {
             below_[open++] = i;
         }
     }
-    if (open > jog_ladders(options_.plan)) {  // a machine that stands within so many margins
+    if (open > jog_ladders(options_.plan)) {  // too many pairs nearer than their margins
         has_floors_ = false;
     } else if (open != 0) {
         find_lower_floors(engine, moved, errors, open);
     }
 }
 
-/// Of the pairs that have less than their margin: all rungs below it at once.
+/// Queries all rungs below the margin at once, for the pairs nearer than their margin.
 void StopCertificate::find_lower_floors(const Engine& engine, std::span<const Pose> moved,
                                         const JointBox& errors, std::uint32_t open) noexcept {
     constexpr std::uint32_t kBelow = kJogRungs - 1;
@@ -316,7 +316,7 @@ void StopCertificate::find_lower_floors(const Engine& engine, std::span<const Po
     }
 }
 
-/// A query a rung, about where the axes are: from `first` down.
+/// Makes one query for each rung from `first` down, at the present positions.
 void StopCertificate::pose_rungs(std::uint32_t place, std::span<const Pose> moved,
                                  const JointBox& errors, std::uint32_t first,
                                  std::span<Query> out) const noexcept {
@@ -331,7 +331,7 @@ void StopCertificate::pose_rungs(std::uint32_t place, std::span<const Pose> move
     }
 }
 
-/// So many of each of the pairs, one behind the other: a pair is a group.
+/// Runs `rungs` queries of each pair, stored in order; each pair is a group.
 void StopCertificate::ask_rungs(const Engine& engine, std::uint32_t pairs, std::uint32_t rungs,
                                 const WorkLists& lists) noexcept {
     if (pairs == 0) {
@@ -347,8 +347,8 @@ void StopCertificate::ask_rungs(const Engine& engine, std::uint32_t pairs, std::
     engine(queries, results, rung_groups_.first(pairs));
 }
 
-/// The highest rung below the margin that was proven. Where none was even tested, no floor is
-/// known.
+/// Sets the floor to the highest proven rung below the margin. If no query ran to its end, the pair
+/// has no floor.
 void StopCertificate::take_floor(std::uint32_t place, std::span<const QueryResult> rungs) noexcept {
     Slot& slot = slots_[queried_[place]];
     const double before_mm = floor_before(slot), margin_mm = tasks_[place].margin_mm;
@@ -364,15 +364,15 @@ void StopCertificate::take_floor(std::uint32_t place, std::span<const QueryResul
     has_floors_ = has_floors_ && is_known;
 }
 
-/// What the last jog kept, where no permit can have led the axes out of its certificate's box: one
-/// that is elsewhere was moved by a person.
+/// The last jog's floor if the axes are still in the box of its certificate. No permit can have led
+/// them out of it: a person moved a machine that is outside.
 double StopCertificate::floor_before(const Slot& slot) const noexcept {
     const bool holds = slot.floor_kept_mm != kNoJogFloor && is_in(slot.floor_box, slot.task.path);
     return holds ? slot.floor_kept_mm : kNoJogFloor;
 }
 
-/// In a jog a pair keeps its floor in place of its margin. False: it is not known, or was only
-/// found now: what finds it takes as long as a proof, and a cycle has room for one of them.
+/// Replaces the margins by the floors of a jog. False: there are none, or this call has just
+/// determined them: that needs as much time as a proof, and a cycle has time for only one.
 bool StopCertificate::keep_floors(const Engine& engine) noexcept {
     if (!has_floors_ || floors_at_ == snapshot_.sample) {
         find_floors(engine);
@@ -385,7 +385,7 @@ bool StopCertificate::keep_floors(const Engine& engine) noexcept {
     return has_floors_;
 }
 
-/// The look-ahead path that the board sent, in pieces. False: it is not known far enough.
+/// Sets the box and its pieces from the board's look-ahead path. False: the path is too short.
 bool StopCertificate::bound_path(double free_s) noexcept {
     double periods = free_s * 1e6 / machine_->can.sample_us;
     if (keeps_path()) {
@@ -407,7 +407,7 @@ bool StopCertificate::bound_path(double free_s) noexcept {
     return true;
 }
 
-/// What is queried, with a permit that is valid for so many samples. False: too little is known.
+/// Sets the box to query for a permit valid for so many samples. False: not enough data.
 bool StopCertificate::bound_box(std::uint32_t samples,
                                 const std::array<double, kAxesMax>& bounds) noexcept {
     queried_pieces_ = {};
@@ -425,10 +425,10 @@ bool StopCertificate::bound_box(std::uint32_t samples,
         return false;
     }
     box_ = reach_within(samples, bounds);
-    return history_.count > 1;  // one snapshot says nothing about speed
+    return history_.count > 1;  // one snapshot gives no speed
 }
 
-/// While the tool is changed any of them may be in the spindle before the permit runs out.
+/// During a tool change any tool may be in the spindle before the permit ends.
 bool StopCertificate::is_queried(const Slot& slot) const noexcept {
     return slot.tool == kNoIndex || slot.tool == tool_ ||
            snapshot_.sample < tool_until_[slot.tool] || snapshot_.mode == kModeToolChange;
@@ -446,7 +446,7 @@ void StopCertificate::list_tasks() noexcept {
     }
 }
 
-/// A permit is as long as the shortest that a pair was proven with.
+/// Sets n: the permit is as long as the shortest one proven for a pair.
 void StopCertificate::take_wider() noexcept {
     bool are_all_proven = true;
     for (std::uint32_t i = 0; i < proof_count_; ++i) {
@@ -498,8 +498,8 @@ void StopCertificate::prove(const Engine& engine,
     if (jog_.is_on()) {
         is_known = keep_floors(engine);
     }
-    // No permit can follow a snapshot that too little is known about: the known-answer test alone
-    // is queried.
+    // Without enough data no permit can follow this snapshot: the prover runs only the known-answer
+    // test.
     const std::uint32_t proven = is_known ? proof_count_ : 0;
     has_wider_ = has_wider_ && is_known;
     for (std::uint32_t i = 0; has_wider_ && i < proof_count_; ++i) {  // in one box each
@@ -522,7 +522,7 @@ void StopCertificate::prove(const Engine& engine,
         if (results_[i].proof != JointBoxProof::proven) {
             continue;
         }
-        if (is_inside_proven(slot)) {  // the two boxes meet, and nothing crosses a surface in them
+        if (is_inside_proven(slot)) {  // the boxes meet, and no surface crosses another in them
             proofs_[i].containment_result = {.status = QueryStatus::ok,
                                              .containment = Containment::none};
         } else {
@@ -534,7 +534,7 @@ void StopCertificate::prove(const Engine& engine,
     }
 }
 
-/// Of a path: its stretches meet where the commands now are, and each is one chain of boxes.
+/// With a path, successive stretches meet at the present commands; each is one chain of boxes.
 bool StopCertificate::is_inside_proven(const Slot& slot) const noexcept {
     if (is_path_known_ || slot.by_path) {
         return slot.has_box && slot.by_path && is_path_known_ &&
@@ -543,7 +543,7 @@ bool StopCertificate::is_inside_proven(const Slot& slot) const noexcept {
     return slot.has_box && is_in(slot.box, slot.task.path);
 }
 
-/// The newest position, as far as the pair's own axes go.
+/// Whether the box contains the newest position, on the axes of the pair's path.
 bool StopCertificate::is_in(const JointBox& box, const JointPath& path) const noexcept {
     bool inside = true;
     for (std::uint32_t k = 0; inside && k < path.count; ++k) {
@@ -557,8 +557,8 @@ bool StopCertificate::is_in(const JointBox& box, const JointPath& path) const no
     return inside;
 }
 
-/// At the sampled pose, or the one commanded for it, which lies in what was just proven: nothing
-/// has to be queried about it.
+/// Tests at the sampled pose or, with a path, at the pose commanded for it. The box proven just now
+/// contains that pose, so its surfaces need no query.
 void StopCertificate::test_containment(const ContainmentTest& containment_test) noexcept {
     const std::array<double, kAxesMax>& position =
         is_path_known_ ? path_->at(snapshot_.sample) : snapshot_.position;
@@ -576,7 +576,7 @@ void StopCertificate::keep() noexcept {
     asks_raise_ = false;
     ladder_ = ladder_next_;
     if (begins_jog_) {
-        return;  // boxes that were proven before are still where nothing crosses a surface
+        return;  // earlier boxes remain valid: no surface crosses another in them
     }
     std::uint32_t next = 0;
     for (std::uint32_t i = 0; i < slot_count_; ++i) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The always-stoppable certificate of one sample: for any start of braking until the permit for it
-// has run out and the board has reacted, every checked pair keeps its margin to standstill. From
-// the snapshots and the look-ahead path to joint boxes, to the prover's results. Pure;
-// everything is reserved at create. Source: docs/theory/certificate.md, "The certificate".
+// The stop certificate of one sample: for any start of braking until the permit has ended and the
+// board has reacted, every checked pair stays beyond its margin to standstill. Turns snapshots and
+// the look-ahead path into joint boxes, and runs the prover. Pure; reserves all memory at create.
+// Source: docs/theory/certificate.md, "The certificate".
 #pragma once
 
 #include <array>
@@ -28,20 +28,20 @@
 
 namespace axg {
 
-/// A pair with one tool, its box still to be said.
-/// @param extents  [surfaces] the engine's, in its order; they must outlive the task
+/// The task of a pair with one tool; the caller sets its box.
+/// @param extents  [surfaces] in the engine's order; they must outlive the task
 [[nodiscard]] JointBoxTask pair_task(const Machine& machine, std::uint32_t pair, std::uint32_t tool,
                                      std::span<const BodyExtent> extents) noexcept;
 
-/// Pairs that one cycle may have to prove: a pair with a tool in it counts once for each tool.
+/// Number of pairs that one cycle may have to prove: a pair with a tool counts once for each tool.
 [[nodiscard]] std::uint32_t stop_tasks(const Machine& machine) noexcept;
 
 struct StopOptions {
-    CyclePlan plan;                        // cycle_plan. Of no effect on what a proven box means
+    CyclePlan plan;                        // cycle_plan. Has no effect on the meaning of a proof
     std::array<double, kAxesMax> count{};  // mm or rad of one count on the wire
 };
 
-/// One pair, with one tool where a tool is in it, over the reachable box.
+/// One pair, with one tool if a tool is part of it, over the reachable box.
 struct PairProof {
     std::uint32_t pair = kNoIndex;  // Machine::pairs
     std::uint32_t tool = kNoIndex;  // Machine::tools; kNoIndex: none in this pair
@@ -49,61 +49,61 @@ struct PairProof {
     ContainmentResult containment_result;
 };
 
-/// What a cycle proved, for whoever decides.
+/// The proofs of a cycle, for its decision.
 struct StopCycle {
     SnapshotStatus status = SnapshotStatus::not_run;
     std::uint16_t known_answer_signature = 0;
-    // Enough snapshots were seen to know speeds and accelerations as well as they can be known; or
-    // the path is known as far as a stop may need it.
+    // The history is full, so that speeds and accelerations have their tightest bounds; or the
+    // look-ahead path is as long as a stop may need; or a jog is on. False if begins_jog.
     bool is_settled = false;
-    std::uint8_t samples = 0;  // n: all of it is proven of a permit that is valid for so many
-    // The longer permit that was tried is, with the bounds of ask_raise where that was called.
+    std::uint8_t samples = 0;  // n: the proofs hold for a permit that is valid for n samples
+    // All pairs are proven for the longer permit, too, with the bounds of ask_raise if called.
     bool is_longer_proven = false;
-    bool is_jog = false;      // proven of the jog that the board reports, and of nothing else
-    bool begins_jog = false;  // what each pair keeps in it was found, and nothing is proven yet
-    bool is_moving = false;   // the board says that its axes move
+    bool is_jog = false;      // the proofs hold only for the jog that the board reports
+    bool begins_jog = false;  // this cycle determined the jog floors and proved nothing
+    bool is_moving = false;   // the board reports that its axes move
     std::span<const PairProof> proofs{};
     LimitFact limit{};  // for left_limits and own_stop
 };
 
 class StopCertificate {
   public:
-    /// @param surfaces  the engine's, in its order (core/certificate/pair_queries.hpp)
-    /// `machine` must outlive the certificate. Empty: memory ran out.
+    /// @param surfaces  in the engine's order (core/certificate/pair_queries.hpp)
+    /// `machine` must outlive the certificate. Empty: out of memory.
     [[nodiscard]] static std::optional<StopCertificate> create(
         const Machine& machine, std::span<const Mesh* const> surfaces, const StopOptions& options);
 
-    /// The newest coherent snapshot.
-    /// @param is_first  nothing before it counts: the receiver began anew
+    /// Adds the newest coherent snapshot.
+    /// @param is_first  the receiver has restarted: discards earlier snapshots
     void note(const AxisSnapshot& snapshot, bool is_first) noexcept;
 
-    /// Commands that the board announces: until a stop begins, or through the stop too.
+    /// Adds commands that the board announces: until a stop begins, or through the stop, too.
     void note_path(const PathPoints& points) noexcept;
 
-    /// From the newest snapshot to standstill no axis is faster than this, by an enforced cap: in
-    /// the next `prove`s, until it is called again. Not for a jog, and not for a look-ahead path,
+    /// Bounds the speed of all axes from the newest snapshot to standstill, by an enforced cap.
+    /// Valid for each `prove` until the next call. Does not apply to a jog or a look-ahead path,
     /// which have bounds of their own.
-    /// @param speeds  [axes] mm/s or rad/s, 0 or more; beyond the largest it bounds nothing
+    /// @param speeds  [axes] mm/s or rad/s, 0 or more; no bound if above the axis' largest speed
     void bound_speeds(std::span<const double> speeds) noexcept;
 
-    /// The longer permit of the next `prove` is tried with these bounds, which are no lower:
-    /// whether a cap may be raised. Machines with GuardRules::cap alone.
+    /// Makes `prove` try the longer permit with these bounds until `keep`, to find whether a cap
+    /// may be raised. They are no lower than the present ones. Only with GuardRules::cap.
     void ask_raise(std::span<const double> speeds) noexcept;
 
-    /// Bounds where the axes can get, and runs the queries. The same for the same snapshots, until
-    /// `keep`. Cost: at most the plan, and a containment test for each pair whose position has left
-    /// the box that was proven last. Where a jog begins nothing is proven: two calls and the
-    /// known-answer test take the plan's place (jog_lists).
+    /// Bounds the reach of the axes, and runs the queries. Repeated calls with the same snapshots
+    /// give the same results until `keep`. Cost: at most the plan, and a containment test for each
+    /// pair whose position has left the box proven last. The start of a jog proves nothing: two
+    /// calls and the known-answer test replace the plan (jog_lists).
     void prove(const Engine& engine, const ContainmentTest& containment_test) noexcept;
 
-    /// What was proven becomes what the next position is looked for in.
+    /// Commits the proofs: the next cycle compares its position with these boxes.
     void keep() noexcept;
 
-    /// Where the axes can get, from the newest snapshot to standstill, each by itself, if the
-    /// permit is valid for so many samples.
+    /// Reach of each axis by itself, from the newest snapshot to standstill, for a permit that is
+    /// valid for so many samples.
     [[nodiscard]] JointBox reach(std::uint32_t samples) const noexcept;
 
-    // Of the last `prove`:
+    // Results of the last `prove`:
     [[nodiscard]] StopCycle cycle() const noexcept {
         return {.status = status_,
                 .known_answer_signature = work_.known_answer_signature,
@@ -119,24 +119,24 @@ class StopCertificate {
     [[nodiscard]] const StagedWork& work() const noexcept { return work_; }
     [[nodiscard]] const CyclePlan& plan() const noexcept { return options_.plan; }
     [[nodiscard]] std::uint32_t containment_tests() const noexcept { return containment_tests_; }
-    /// What was queried, for whoever queries more about the same pairs.
+    /// The tasks of the last `prove`, for more queries about the same pairs.
     [[nodiscard]] std::span<const JointBoxTask> tasks() const noexcept {
         return tasks_.first(proof_count_);
     }
 
     [[nodiscard]] const AxisSnapshot& snapshot() const noexcept { return snapshot_; }
-    /// Everything `axis` may be doing at the newest snapshot; its whole range of speed in a stop of
-    /// the board's own and until 16 strides of rest are over. Precondition: one was noted.
+    /// Range of `axis` at the newest snapshot; its whole range of speed and acceleration in a stop
+    /// of the board's own, until 16 strides of rest are over. Precondition: a snapshot was noted.
     [[nodiscard]] AxisRange now(std::uint32_t axis) const noexcept;
-    /// The same where the look-ahead path ends; without one, now.
+    /// The same at the end of the look-ahead path; without a path, `now`.
     [[nodiscard]] AxisRange announced(std::uint32_t axis) const noexcept {
         const auto end = path_ ? path_->end(axis) : std::nullopt;
         return end ? *end : now(axis);
     }
-    /// What it is promised to keep to, and no faster than `bound_speeds` has it.
+    /// The promised limits, with the speed lowered to that of `bound_speeds`.
     [[nodiscard]] AxisLimits bounded_limits(std::uint32_t axis) const noexcept;
-    /// How far `axis` may be from where the newest snapshot has it as long as nothing commands it
-    /// to move, mm or rad: the snapshot may have been off its command, and it may be off later.
+    /// Largest distance of `axis` from its position in the newest snapshot while it has no command
+    /// to move, mm or rad: the snapshot may differ from the command, and so may later positions.
     [[nodiscard]] double held_error(std::uint32_t axis) const noexcept {
         return errors_of(axis).position + machine_->axes[axis].following_error;
     }
@@ -146,16 +146,16 @@ class StopCertificate {
     }
 
   private:
-    /// A pair with one tool: what stays the same from cycle to cycle, and what was proven last.
+    /// A pair with one tool: its constants and its last proof.
     struct Slot {
         JointBoxTask task;
         std::uint32_t pair, tool;
-        double floor_mm;       // what it keeps in the jog that is on
-        double floor_kept_mm;  // and kept in the last one that was proven; kNoJogFloor: none
-        JointBox floor_box;    // where
+        double floor_mm;       // floor in the present jog
+        double floor_kept_mm;  // floor in the last proven jog; kNoJogFloor: none
+        JointBox floor_box;    // box of that proof
         bool has_box;
         JointBox box;
-        bool by_path;  // and it is around a path, proven up to this sample
+        bool by_path;  // the box encloses a path, proven up to sample proven_until
         std::uint64_t proven_until;
     };
 
@@ -204,20 +204,20 @@ class StopCertificate {
     StopOptions options_;
     std::uint32_t stride_ = 1;
     StagedProver prover_;
-    std::optional<LookAheadPath> path_;  // where the board sends one
+    std::optional<LookAheadPath> path_;  // empty: the board sends none
     Arena arena_;
     std::span<BodyExtent> extents_;      // [surfaces]
     std::span<Slot> slots_;              // [pairs with each tool]
     std::span<std::uint32_t> queried_;   // slots of the tasks
-    std::span<JointBoxTask> tasks_;      // and as many of the longer permit
+    std::span<JointBoxTask> tasks_;      // and as many for the longer permit
     std::span<JointBoxResult> results_;  // likewise
     std::span<PairProof> proofs_;
-    std::span<std::uint32_t> untested_;  // proofs that want a containment test
-    std::span<std::uint32_t> below_;     // where a jog begins, proofs with less than the margin
+    std::span<std::uint32_t> untested_;  // proofs that need a containment test
+    std::span<std::uint32_t> below_;     // at the start of a jog, pairs nearer than their margin
     std::span<Query> rung_queries_;
     std::span<QueryResult> rung_results_;
-    std::span<GroupWork> rung_groups_;  // a pair is one
-    std::span<JointBox> pieces_;        // room for those of the path
+    std::span<GroupWork> rung_groups_;  // one group for each pair
+    std::span<JointBox> pieces_;        // memory for the pieces of the path
     std::uint32_t slot_count_ = 0, proof_count_ = 0;
 
     AxisSnapshot snapshot_;
@@ -227,28 +227,28 @@ class StopCertificate {
     MotionHistory history_;
     LimitRules limit_rules_;
     LimitWatch limit_watch_;
-    LimitFact broken_limit_;       // until a cycle was judged by it and the window shows none
-    LimitFact own_stop_;           // likewise, of a stop of the board's own
-    bool is_limit_judged_ = true;  // of several snapshots noted, the newest alone is judged
+    LimitFact broken_limit_;       // held until a cycle has used it and the window shows none
+    LimitFact own_stop_;           // likewise, for a stop of the board's own
+    bool is_limit_judged_ = true;  // a cycle has used them; it judges only the newest snapshot
     SnapshotStatus status_ = SnapshotStatus::not_run;
     bool is_path_known_ = false;  // as far as a stop may need it
-    bool has_left_path_ = false;  // the newest snapshot says so, or a path frame before it
-    bool took_back_ = false;      // a path frame since the newest snapshot
+    bool has_left_path_ = false;  // by the newest snapshot, or by a path frame before it
+    bool took_back_ = false;      // by a path frame since the newest snapshot
     JogWatch jog_;
     bool has_left_jog_ = false;
-    bool has_floors_ = false;                     // of the jog that is on
-    bool begins_jog_ = false;                     // they were found by the last `prove`
-    std::uint64_t floors_at_ = 0;                 // the sample that they were found at
+    bool has_floors_ = false;                     // for the present jog
+    bool begins_jog_ = false;                     // the last `prove` determined the floors
+    std::uint64_t floors_at_ = 0;                 // sample at which it did
     std::uint64_t path_until_ = 0;                // sample up to which the path is queried
-    JointBox box_;                                // that is queried
-    std::span<const JointBox> queried_pieces_{};  // and in which pieces, where the path is known
-    PermitLadder ladder_, ladder_next_;           // what this cycle tries, and the next
-    std::uint8_t samples_;                        // n that was proven
-    bool has_wider_ = false;                      // it was tried
-    JointBox wider_box_;                          // with it
+    JointBox box_;                                // the queried box
+    std::span<const JointBox> queried_pieces_{};  // its pieces; empty without a path
+    PermitLadder ladder_, ladder_next_;           // of this cycle and of the next
+    std::uint8_t samples_;                        // proven n
+    bool has_wider_ = false;                      // this cycle tries the longer permit
+    JointBox wider_box_;                          // box of the longer permit
     std::uint32_t tool_ = kNoIndex;
-    std::array<std::uint64_t, kToolsMax> tool_until_{};  // the first sample at which each of those
-                                                         // before it counts no more
+    std::array<std::uint64_t, kToolsMax> tool_until_{};  // first sample at which each earlier tool
+                                                         // no longer counts
     StagedWork work_;
     std::uint32_t containment_tests_ = 0;
 };

@@ -8,16 +8,16 @@ namespace axg {
 
 namespace {
 
-constexpr double kUp = 1.0 + 0x1p-40;  // more than the roundings of any formula below
+constexpr double kUp = 1.0 + 0x1p-40;  // exceeds the roundings of any formula below
 
-/// Between two latches.
+/// Largest error of the time between two latches.
 double latch_jitter_seconds(const Machine& machine) noexcept {
     const double stated_s = machine.guard.latch_jitter_s;
     if (machine.can.format != CanFormat::signals) {
         return stated_s;
     }
-    // Frames of signals say nothing about the instant: it is known to their jitter, and the anchor
-    // that numbers them leans by the share of a period.
+    // Frames of signals carry no instant. It has the error of their arrival jitter, and the anchor
+    // that numbers them may be off by the share of a period.
     const double period_s = machine.can.sample_us * 1e-6;
     return std::max(stated_s, arrival_jitter_us_of(machine.can) * 1e-6 + period_s * kPeriodShare);
 }
@@ -34,13 +34,14 @@ AxisLimits stop_limits(const Machine& machine, std::uint32_t axis) noexcept {
 }
 
 double capped_speed(const Axis& axis, double share) noexcept {
-    // Half a line of motion within +-f of its command, both with accelerations up to a.
+    // Bound of relative speed over a half-line of time: motion within +-f of its command, both with
+    // accelerations up to a.
     const double swing = 2 * std::sqrt(2 * axis.acceleration_max * axis.following_error);
     return std::min(axis.speed_max, (share * axis.speed_max + swing) * kUp);
 }
 
 AgeSeconds age_seconds(const Machine& machine) noexcept {
-    // A register that holds the value of the SYNC before is a period of the board old.
+    // A register with the value of the previous SYNC is one period of the board old.
     constexpr double kLongest = 1e-6 * (1 + kPeriodShare);
     const ValueAge age = machine.can.latched_age;
     return {.most = age.most_us * kLongest, .spread = (age.most_us - age.least_us) * kLongest};

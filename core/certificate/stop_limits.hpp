@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a machine file promises of the motion of its axes, as the certificate uses it: limits,
+// The promises of a machine file about axis motion, in the form that the certificate needs: limits,
 // errors of the samples, and the time until braking. Pure. Source: docs/theory/certificate.md,
 // "How far an axis can go".
 #pragma once
@@ -13,16 +13,16 @@
 
 namespace axg {
 
-/// How old positions are at their latch, s, in the longest periods of the board.
+/// Age of positions at their latch, s, with the longest period of the board.
 struct AgeSeconds {
     double most = 0;
-    double spread = 0;  // by which one may be older than another
+    double spread = 0;  // largest difference of two ages
 };
 [[nodiscard]] AgeSeconds age_seconds(const Machine& machine) noexcept;
 
-/// From the instant of a sample's positions until the board must have begun to brake, s: they had
-/// an age at the latch, the permit for them, valid for so many samples, has run out, and the board
-/// has reacted.
+/// Time from the instant of a sample's positions to the latest start of braking, s: their age at
+/// the latch with its jitter, the validity of their permit (`samples` periods), and the reaction of
+/// the board.
 [[nodiscard]] double free_seconds(const Machine& machine, std::uint32_t samples) noexcept;
 
 /// Errors of the positions that a board's frames report.
@@ -32,18 +32,18 @@ struct AgeSeconds {
 
 [[nodiscard]] AxisLimits stop_limits(const Machine& machine, std::uint32_t axis) noexcept;
 
-/// How fast an axis gets at most whose commands its board keeps below this share of its largest
-/// speed: it swings about them within its following error, and a stop may begin at any point of
-/// that.
+/// Largest speed of an axis whose board limits its commands to this share of its largest speed: the
+/// axis swings about its commands within its following error, and a stop may begin at any point of
+/// the swing.
 [[nodiscard]] double capped_speed(const Axis& axis, double share) noexcept;
 
-/// Where `axis` can get until it stands, mm or rad. A travel that the board enforces ends it.
+/// Reach of `axis`: every position until it rests, mm or rad; bounded by an enforced travel.
 /// @param free_s          free_seconds of the permit
-/// @param position_error  of reported positions, by which the travel is wider
+/// @param position_error  of reported positions; widens the travel
 [[nodiscard]] ReachRange axis_reach(const Machine& machine, std::uint32_t axis,
                                     const AxisLimits& limits, const AxisRange& now, double free_s,
                                     double position_error) noexcept;
-/// The axis of a box that lies around the range, roundings included.
+/// Sets the axis of a box to enclose the range, roundings included.
 void put_reach(const ReachRange& range, std::uint32_t axis, JointBox& box) noexcept;
 
 }  // namespace axg

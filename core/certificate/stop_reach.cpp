@@ -8,9 +8,9 @@ namespace axg {
 
 namespace {
 
-constexpr double kUp = 1.0 + 0x1p-40;  // more than the roundings of any formula below
+constexpr double kUp = 1.0 + 0x1p-40;  // exceeds the roundings of any formula below
 
-/// Distance gained while the speed rises from `from` at `slope`: only what goes forward counts.
+/// Distance gained while the speed rises from `from` at `slope`: only forward motion counts.
 double forward_part(double from, double slope, double time) noexcept {
     const double to = from + slope * time;
     if (from >= 0) {
@@ -37,7 +37,7 @@ FreeMotion move_freely(const AxisLimits& l, double speed, double acceleration,
                        double time) noexcept {
     const double rise = std::min(time, (l.acceleration_max - acceleration) / l.jerk_max);
     const double risen = speed + rise * (acceleration + 0.5 * l.jerk_max * rise);
-    // While the acceleration rises the speed lies below its chord, and below full acceleration.
+    // While the acceleration rises, the speed is below its chord, and below full acceleration.
     const double chord = 0.5 * (std::max(speed, 0.0) + std::max(risen, 0.0)) * rise;
     const double exact = rise * (speed + rise * (0.5 * acceleration + rise * l.jerk_max / 6));
     const bool is_forward = speed >= 0 && acceleration >= 0;
@@ -47,7 +47,8 @@ FreeMotion move_freely(const AxisLimits& l, double speed, double acceleration,
     return {distance + full.distance, full.speed, acceleration + l.jerk_max * rise};
 }
 
-/// Braking from an acceleration a >= -stopping_min: it falls by the jerk to that and stays there.
+/// Braking from an acceleration a >= -stopping_min: the jerk lowers it to -stopping_min, where it
+/// remains.
 double braking_distance(const AxisLimits& l, double speed, double a) noexcept {
     const double d = l.stopping_min, j = l.jerk_max;
     // speed + a t - j t^2 / 2 is zero, or the ramp is over, whichever comes first.
@@ -59,25 +60,25 @@ double braking_distance(const AxisLimits& l, double speed, double a) noexcept {
     return in_ramp + 0.5 * after * after / d;
 }
 
-/// The same, knowing that the speed never exceeds its largest: an acceleration a0 at the start of
-/// braking adds a0^2 / 2j to the speed there, and that was at least `least`. So the speed is at its
-/// largest no longer than a0 / j, and then falls.
+/// The same for a speed that never exceeds speed_max: an acceleration a0 at the start of braking
+/// adds a0^2 / 2j to the speed there, which is at least `least`. So the speed is at its largest for
+/// at most a0 / j, then falls.
 double capped_braking_distance(const AxisLimits& l, double least, double a) noexcept {
     const double room = std::max(0.0, l.speed_max - least);
     const double start = std::clamp(a, 0.0, std::sqrt(2 * l.jerk_max * room));
     return l.speed_max * start / l.jerk_max + braking_distance(l, l.speed_max, 0);
 }
 
-/// An axis that goes back with an acceleration b forwards, which its jerk takes away: what is left
-/// of b where it turns round, b^2 - 2 j |v| squared; 0: it does not.
+/// For an axis that moves back with a forward acceleration b, which the jerk lowers: the remainder
+/// of b when the axis reverses, sqrt(b^2 - 2 j |v|); 0: it does not reverse.
 double acceleration_at_turn(const AxisLimits& l, const FreeMotion& back) noexcept {
     const double b = back.acceleration;
     const double square = b * b * kUp + 2 * l.jerk_max * back.speed;
     return b > 0 && square > 0 ? std::min(b, std::sqrt(square)) : 0;
 }
 
-/// An axis whose stop turns it round: before it does, the jerk takes its deceleration b away. From
-/// v, v <= b^2 / 2J, it gets (2/3) v^2 / b farther at most, whatever b and the jerk J >= j are.
+/// For an axis that a stop reverses: before that, the jerk lowers its deceleration b to 0. From v,
+/// v <= b^2 / 2J, the axis moves at most (2/3) v^2 / b farther, for any b and any jerk J >= j.
 double distance_before_turn(const AxisLimits& l, double fastest) noexcept {
     if (!l.stop_turns_round) {
         return 0;
@@ -92,19 +93,19 @@ double distance_before_turn(const AxisLimits& l, double fastest) noexcept {
 double forward_reach(const AxisLimits& limits, double speed_low, double speed_high, double free_s,
                      double acceleration_high) noexcept {
     const double most = std::clamp(speed_high, -limits.speed_max, limits.speed_max);
-    // A stop may end the free motion at any time, at stopping_min and not harder: from there on no
-    // acceleration is less, so none is taken for the free motion either.
+    // A stop may end the free motion at any time, at stopping_min and not harder. Its acceleration
+    // is not lower than that, so the free motion does not assume a lower one, either.
     const double floor = std::max(-limits.stopping_min, -limits.acceleration_max);
     const double acceleration = std::clamp(acceleration_high, floor, limits.acceleration_max);
     const FreeMotion free = move_freely(limits, most, acceleration, free_s);
     const double before_turn = distance_before_turn(limits, std::max(most, free.speed));
     double from_speed = free.speed, from_acceleration = free.acceleration;
-    if (free.speed <= 0) {  // it goes back
+    if (free.speed <= 0) {  // the axis moves back
         from_speed = 0;
         from_acceleration = limits.stop_turns_round ? acceleration_at_turn(limits, free) : 0;
     }
     if (from_speed <= 0 && !(from_acceleration > 0)) {
-        return (free.distance + before_turn) * kUp;  // and braking does not turn it round
+        return (free.distance + before_turn) * kUp;  // and braking does not reverse it
     }
     const double least =
         std::max(-limits.speed_max, std::min(speed_low, most) - limits.acceleration_max * free_s);

@@ -19,7 +19,7 @@ bool is_in_travel(const Machine& machine, const JointPath& path, const JointBox&
     bool inside = !machine.travel.proofs.empty();
     for (std::uint32_t k = 0; inside && k < path.count; ++k) {
         const std::uint32_t axis = machine.bodies[path.body[k]].joint.axis;
-        // Sums are rounded to nearest, so they may be off; never across a number they can be.
+        // Sums are rounded to nearest: a rounding never crosses a representable number.
         inside = machine.axes[axis].unlimited ||
                  (box.centre[axis] - box.half[axis] >= machine.travel.low[axis] &&
                   box.centre[axis] + box.half[axis] <= machine.travel.high[axis]);

@@ -29,19 +29,19 @@ AXG_HD V3<V> from_face(const V3<V>& p0, const V3<V>& f1, const V3<V>& f2, const 
             fma(-w2, f2.z, fma(-w1, f1.z, z.z))};
 }
 
-/// The limit below which r or less is certain.
+/// A witness whose distance plus error bound is below this limit proves a distance of at most r.
 AXG_HD float near_limit(double r_mm) noexcept {
     return static_cast<float>(r_mm * (1.0 - 0x1p-20));
 }
 
 /// True only where some point of a is at most r from some point of b.
-/// @param edges_square  as of closest_direction: nine of the witnesses; six are of faces
+/// @param edges_square  of closest_direction: nine of the witnesses; the other six are of faces
 /// @param near_mm       near_limit(r)
 template <class V>
 AXG_HD typename lanes::Traits<V>::Mask certified_within(const TrianglePair<V>& p, V edges_square,
                                                         V near_mm) noexcept {
     using lanes::either, lanes::greater, lanes::sqrt;
-    // Of each witness, all coordinates together.
+    // Bounds the error of one witness, all coordinates together.
     const V errors = lanes::Traits<V>::of(3.0) * (p.scale.x + p.scale.y + p.scale.z) +
                      lanes::Traits<V>::of(0x1p-60);
     auto told = greater(near_mm, sqrt(edges_square) + errors);

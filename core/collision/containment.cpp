@@ -13,13 +13,13 @@
 namespace axg {
 namespace {
 
-/// More than a corner's rounded place, and the defect of a pose that is rigid to kRigidDefectMax
-/// only, can be off: for the boxes, which are tested first.
+/// Slack of the box test, which runs first. It exceeds the rounding of a corner's place plus the
+/// error of a pose that is rigid only to kRigidDefectMax.
 constexpr double kBoxSlackMm = 0x1p-7;
-/// kPlaceErrorMm less the rounding of the very sum that is compared with it, at most 2^-32.
+/// kPlaceErrorMm less the rounding (at most 2^-32) of the sum that is_placed compares with it.
 constexpr double kPlacedMm = 0x1p-29 - 0x1p-32;
 
-/// The way from p out of the box; negative outside.
+/// Shortest distance from p to the planes of the box's faces, mm; negative outside.
 double way_out_mm(const Aabb& box, const Vec3d& p) noexcept {
     const double x = double(box.h[0]) - std::fabs(p.x - double(box.c[0]));
     const double y = double(box.h[1]) - std::fabs(p.y - double(box.c[1]));
@@ -27,18 +27,18 @@ double way_out_mm(const Aabb& box, const Vec3d& p) noexcept {
     return std::fmin(std::fmin(x, y), z);
 }
 
-/// Whether `pose` takes the point of a to the point of b, to within kPlaceErrorMm.
+/// Whether `pose` maps the point of a onto the point of b, to within kPlaceErrorMm.
 bool is_placed(const Pose& pose, const Vec3d& of_a, const Vec3d& of_b) noexcept {
     const Vec3d off = apply(pose, of_a) - of_b;
     return dot(off, off) <= kPlacedMm * kPlacedMm;
 }
 
-/// The corner of a part from which the other body's box is left soonest, and its place there.
+/// The corner of a part with the shortest way out of the other body's box, and its place there.
 struct Probe {
     Vec3d corner, place;
 };
 
-/// Empty: a corner lies outside the box, and so the whole part outside the body.
+/// Empty: a corner is outside the box, so the whole part is outside the body.
 std::optional<Probe> probe_of(const SurfacePart& part, const Pose& pose, const Aabb& box) noexcept {
     Probe best;
     double shortest = std::numeric_limits<double>::infinity();
@@ -156,8 +156,8 @@ void ContainmentTest::judge(const ApartPose& at, ContainmentResult& result) cons
     }
 }
 
-/// Whether a part of a is inside b, or (is_a false) a part of b inside a. False also where that
-/// could not be found out: the status of the work says why.
+/// Whether a part of a is inside b, or (is_a false) a part of b inside a. Also false if the test
+/// fails: the status of the work then gives the reason.
 bool ContainmentTest::is_inside(const ApartPose& at, bool is_a, RayWork& work,
                                 ContainmentResult& result) const noexcept {
     const Body& inner = bodies_[is_a ? at.mesh_a : at.mesh_b];
@@ -182,7 +182,7 @@ bool ContainmentTest::is_inside(const ApartPose& at, bool is_a, RayWork& work,
         }
         const Winding winding = winding_number(outer.solid, place, capacities_, work);
         if (!winding.is_known) {
-            // A point on a surface that is proven far: what was proven is not what was queried.
+            // The point is on a surface that is proven far: the proof is not about this query.
             work.status = work.status == QueryStatus::ok ? QueryStatus::bad_query : work.status;
             return false;
         }

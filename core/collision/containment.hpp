@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Is a part of one body inside the other? Surfaces do not see that. Tested of pairs whose surfaces
-// are proven apart: then each connected part of a surface lies wholly inside the other solid or
-// wholly outside, and one of its corners tells which. Proof: docs/theory/accuracy.md,
+// Tests whether a part of one body is inside the other, which surfaces do not show. The surfaces of
+// the pair are proven apart: then each connected part of one is wholly inside the other solid or
+// wholly outside, and one of its corners decides which. Proof: docs/theory/accuracy.md,
 // "Containment".
 #pragma once
 
@@ -27,20 +27,20 @@ enum class Containment : std::uint8_t {
 };
 
 struct ContainmentResult {
-    QueryStatus status = QueryStatus::not_run;  // not_run too where the surfaces are not proven
-                                                // apart: then there is nothing to add
+    QueryStatus status = QueryStatus::not_run;  // also not_run if the surfaces are not proven
+                                                // apart: the pair is near already
     Containment containment = Containment::not_proven;
     std::uint32_t rays = 0, nodes = 0, triangles = 0, exact_signs = 0;  // work done
 };
 
 /// A corner placed in the other body's frame is rounded, and may be this far from its true place.
-/// So a query must have been proven with at least this pose_error_mm: then nothing of the other
-/// surface is between the two places.
+/// So the proof of a query needs at least this pose_error_mm: then no part of the other surface is
+/// between the two places.
 inline constexpr double kPlaceErrorMm = 0x1p-29;
 
-/// Two surfaces at a pose at which they are proven apart: what a test begins with. Whoever has that
-/// proof makes one, from an engine's result (`apart_pose`) or from a joint box
-/// (core/certificate/joint_box_proof.hpp). Zeroed: nothing is proven.
+/// Two surfaces at a pose at which they are proven apart: the input of a containment test. The
+/// proof is an engine's result (`apart_pose`) or one about a joint box
+/// (core/certificate/joint_box_proof.hpp). Zeroed: no proof.
 struct ApartPose {
     bool is_proven = false;
     std::uint32_t mesh_a = 0, mesh_b = 0;
@@ -48,7 +48,7 @@ struct ApartPose {
     Pose pose;                 // a's mesh frame to b's
 };
 
-/// Proven where the result to this very query is.
+/// The pose of `query`; proven if `surfaces`, the result of that query, is far.
 [[nodiscard]] ApartPose apart_pose(const Query& query, const QueryResult& surfaces) noexcept;
 
 /// The test itself, over surfaces with an inside. One arena, sealed; nothing allocates in a query.
@@ -63,13 +63,13 @@ class ContainmentTest {
         std::span<const Mesh* const> meshes, std::span<const Tree> trees,
         const Capacities& capacities, std::span<const std::uint32_t> same_as = {});
 
-    /// Not run where the surfaces are not proven apart.
-    /// Cost: a few corners for each part of each body, and a ray for each part whose box lies in
+    /// Returns not_run if the surfaces are not proven apart.
+    /// Cost: a few corners for each part of each body, and a ray for each part whose box is in
     /// the other body's box; nodes, triangles and exact signs of one query, all rays together,
     /// within the capacities (node_pairs, triangle_pairs, rechecks).
     [[nodiscard]] ContainmentResult test(const ApartPose& at) const noexcept;
 
-    /// The same of each query.
+    /// Tests each query.
     /// @param surfaces  the engine's results to `queries`
     void run(std::span<const Query> queries, std::span<const QueryResult> surfaces,
              std::span<ContainmentResult> results) const noexcept;

@@ -40,7 +40,7 @@ const LaneKernels* kernels_of(LaneSet lanes) noexcept {
     return nullptr;
 }
 
-/// What the next query begins with, unless this one does.
+/// Prefetches the roots of the next query's trees, except those that this query uses.
 void fetch_roots(std::span<const Tree> trees, const Query& now, const Query& next) noexcept {
     for (const auto mesh : {&Query::mesh_a, &Query::mesh_b}) {
         if (next.*mesh != now.*mesh && next.*mesh < trees.size() &&
@@ -140,7 +140,7 @@ std::optional<CpuEngine> CpuEngine::over_trees(std::span<const Tree> trees,
     return engine;
 }
 
-/// The last that is taken from the arena.
+/// Reserves the lists, the last part of the arena, and seals the arena.
 void CpuEngine::take_lists(const Capacities& capacities) noexcept {
     lists_.nodes = arena_.take<NodePair>(capacities.node_pairs);
     lists_.keys = arena_.take<std::uint64_t>(kKeys);
@@ -178,7 +178,7 @@ void CpuEngine::run(std::span<const Query> queries, std::span<QueryResult> resul
         GroupWork& group = groups[queries[i].group];
         results[i] = QueryResult{.status = QueryStatus::ok};  // left out: near
         if (queries[i].kind == QueryKind::clearance) {
-            results[i].status = QueryStatus::bad_query;  // its work is ordered by what was found
+            results[i].status = QueryStatus::bad_query;  // its work depends on its results
         } else if (lists.counts_all || (!group.is_near && first_full(group) == QueryStatus::ok)) {
             lists.group = &group;
             results[i] = QueryResult{};
@@ -189,7 +189,7 @@ void CpuEngine::run(std::span<const Query> queries, std::span<QueryResult> resul
             group.is_near = group.needs_all && results[i].proof != Proof::far;
         }
     }
-    // A share is spent by all of a group together: what was proven before it was does not count.
+    // The queries of a group have one share: if they overrun it, their earlier proofs are void.
     for (std::size_t i = 0; i < queries.size(); ++i) {
         const QueryStatus full = first_full(groups[queries[i].group]);
         if (full != QueryStatus::ok) {

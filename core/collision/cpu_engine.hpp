@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The CPU engine: the 32-wide trees traversed with the widest float lanes the processor has.
-// Reference for the other engines, fallback, and what runs where there is no GPU. One arena,
+// Reference for the other engines, fallback, and the engine of hosts without a GPU. One arena,
 // sealed; nothing allocates in a query.
 #pragma once
 
@@ -21,7 +21,7 @@ namespace axg {
 
 enum class LaneSet : std::uint8_t { widest, avx512, avx2, neon };
 
-/// What an engine for these meshes reserves, byte by byte.
+/// Memory that an engine reserves for its meshes, in bytes.
 struct MemoryPlan {
     std::size_t trees_bytes = 0, lists_bytes = 0;
 
@@ -31,9 +31,9 @@ struct MemoryPlan {
 class CpuEngine {
   public:
     /// Builds the trees and reserves everything. A mesh without triangles, or with a
-    /// coordinate that is not finite or beyond kCoordinateMmMax, keeps its index and returns
-    /// bad_query. Empty: this processor lacks the lane set (`lane_set_missing` says what
-    /// to do), or memory ran out.
+    /// coordinate that is not finite or beyond kCoordinateMmMax, still has its index, and its
+    /// queries return bad_query. Empty: this processor lacks the lane set (message: kNoLaneSet),
+    /// or memory ran out.
     [[nodiscard]] static std::optional<CpuEngine> create(std::span<const Mesh* const> meshes,
                                                          const Capacities& capacities,
                                                          LaneSet lanes = LaneSet::widest);
@@ -49,8 +49,8 @@ class CpuEngine {
     /// As `Engine::run_groups`.
     void run(std::span<const Query> queries, std::span<QueryResult> results,
              std::span<GroupWork> groups) noexcept;
-    /// Calls with groups take no early exit, and charge what an engine without any would: for
-    /// tests. Then nothing bounds their work.
+    /// For tests: calls with groups make no early exit, and charge as much as an engine without
+    /// early exits. No capacity bounds their work then.
     void set_counts_all(bool counts_all) noexcept { lists_.counts_all = counts_all; }
     [[nodiscard]] Engine engine() noexcept;
     [[nodiscard]] const MemoryPlan& memory() const noexcept { return memory_plan_; }

@@ -15,10 +15,10 @@ namespace axg {
 
 namespace {
 
-// A piece is the triangle after so many cuts through its longest edge: a 4096th of its size.
+// Most cuts of a triangle through its longest edge: a piece is then a 4096th of its size.
 constexpr int kCutsMax = 24;
 constexpr std::size_t kAllCutsMax = 1U << 12U;  // of one triangle
-constexpr int kHalvings = 7;                    // of what lies between proven and not proven
+constexpr int kHalvings = 7;                    // of the interval between proven and not proven
 // Each corner, closest point and length below is off by less than a hundred roundings of the
 // largest coordinate.
 constexpr double kRoundingMm = 0x1p-45 * kCoordinateMmMax;
@@ -38,7 +38,7 @@ double length(Vec3d v) noexcept {
     return std::sqrt(dot(v, v));
 }
 
-/// What lies at `s` of the way from a to b, s in [0, 1].
+/// The point at the fraction `s` of the way from a to b, s in [0, 1].
 Vec3d between(Vec3d a, Vec3d b, double s) noexcept {
     return a + s * (b - a);
 }
@@ -48,8 +48,8 @@ double share(double part, double rest) noexcept {
     return sum > 0 ? std::clamp(part / sum, 0.0, 1.0) : 0.0;
 }
 
-/// A point of the triangle that is about the nearest one to p. That it is a point of the triangle
-/// is all that a bound needs. Source: Ericson, Real-Time Collision Detection, 5.1.5.
+/// A point of the triangle that is about the nearest one to p. A bound only needs it to be a point
+/// of the triangle. Source: Ericson, Real-Time Collision Detection, 5.1.5.
 Vec3d near_point(Vec3d p, const Corners& t) noexcept {
     const Vec3d ab = t[1] - t[0], ac = t[2] - t[0];
     const Vec3d ap = p - t[0], bp = p - t[1], cp = p - t[2];
@@ -104,7 +104,7 @@ Range range_of(const Corners& t) noexcept {
     return out;
 }
 
-/// Triangles of the other surface that a triangle may lie within reach of. One that is forgotten
+/// Finds the triangles of the other surface that may be within reach of a triangle. A missed one
 /// makes a bound larger, never wrong.
 void find_candidates(const TreeData& tree, std::span<const Triangle> other, const Corners& about,
                      double reach_mm, std::vector<std::uint32_t>& nodes,
@@ -175,8 +175,8 @@ bool is_near(const Corners& t, const Range& range, double reach_mm) noexcept {
     return near;
 }
 
-/// What the work on one triangle goes on in. Each piece brings its candidates, those of its parent
-/// that are near it, behind those of its parent.
+/// Working memory for one triangle. Each piece appends its candidates (those of its parent that
+/// are near it) to those of its parent.
 struct Work {
     std::vector<Corners> candidates;
     std::size_t cuts = 0;
@@ -207,7 +207,7 @@ bool is_within(const Piece& piece, std::size_t first, double within_mm, Work& wo
     return true;
 }
 
-/// The first triangles of the surface, at most so many, that are not proven to be within.
+/// The first triangles of the surface, at most `most`, that are not proven to be within.
 std::vector<std::uint32_t> find_beyond(std::span<const Triangle> surface,
                                        std::span<const Triangle> other, const TreeData& tree,
                                        double within_mm, std::size_t most) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The certified test in double of one pair of triangles: what is run on pairs that float could
-// not tell apart. Source: docs/theory/accuracy.md, section 4.
+// The certified test in double of one pair of triangles: the recheck of pairs that float could
+// not decide. Source: docs/theory/accuracy.md, section 4.
 #pragma once
 
 #include "core/base/host_device.hpp"

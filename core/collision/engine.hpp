@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The one narrow interface to every engine: queries about pairs of surfaces in, results out.
-// Engines agree bit for bit, as far as "What engines agree on" below goes.
+// Engines agree bit for bit, as far as "Agreement of engines" below states.
 //
 // is_farther(pair, pose, r): is every surface point of a, placed at `pose` in b's frame, more than
 // r mm from every surface point of b? `far` is a theorem; anything else is `not_proven` and counts
@@ -50,16 +50,16 @@ struct TriangleIds {
 
 struct Query {
     QueryKind kind = QueryKind::farther;
-    // farther: a pair of triangles that float leaves undecided is near. Nothing is tested again in
-    // double, and nothing is counted as a recheck.
+    // farther: a pair of triangles that float leaves undecided is near. The engine neither makes
+    // nor counts a recheck.
     bool is_float_only = false;
-    std::uint16_t group = 0;  // whose share its work is charged to, in a call with groups
-    std::uint32_t mesh_a = 0, mesh_b = 0;  // as the engine was given them
-    double r_mm = 0;           // farther, touching: the margin; clearance: no interest beyond
+    std::uint16_t group = 0;  // in a call with groups: index of the group that is charged
+    std::uint32_t mesh_a = 0, mesh_b = 0;  // in the order of the engine's meshes
+    double r_mm = 0;           // farther, touching: the margin; clearance: largest result
     double pose_error_mm = 0;  // how far any point of a may be from where `pose` puts it
     Pose pose;                 // a's mesh frame to b's; rigid to kRigidDefectMax
     std::span<TriangleIds>
-        list{};  // touching: takes the first list.size() pairs found, may be empty
+        list{};  // touching: out, the first list.size() pairs found; may be empty
 };
 
 struct QueryResult {
@@ -71,21 +71,20 @@ struct QueryResult {
     std::uint32_t node_pairs = 0, triangle_pairs = 0, rechecks = 0;  // work done
 };
 
-// What engines agree on, given the same meshes and the same capacities a query:
-// - Which queries are refused (bad_query).
-// - farther: `proof`; where it is far, every field. Where it is not, the CPU stops at the first
-//   pair of triangles that touches, other engines count on: status and counts may differ.
-// - touching: whether a capacity was too small; where none was, every field. Lists hold the same
-//   pairs, in an order of each engine's own; of more pairs than places, any.
-// - clearance: where no engine ran out of capacity, `status`, `proof` and `clearance_mm`, and
-//   `nearest` unless several pairs are equally near. The work differs, and so does what is too
-//   much.
-// In a call with groups, of the same shares:
-// - Where no list of a group is full on either engine: all of the above.
-// - Where one is full, all queries of that group are not proven. What the CPU stops early it does
-//   not charge: it may prove what another engine has no room for, and never the other way round.
+// Agreement of engines, for the same meshes and the same capacities per query:
+// - All refuse the same queries (bad_query).
+// - farther: equal `proof`; if it is far, every field is equal. Otherwise the CPU stops at the
+//   first pair of triangles that touches, and other engines count on: status and counts may differ.
+// - touching: the same queries exceed a capacity; without that, every field is equal. Lists hold
+//   the same pairs, in any order; if there are more pairs than places, any of them.
+// - clearance: if no engine exceeds a capacity, equal `status`, `proof` and `clearance_mm`, and
+//   `nearest` unless several pairs are equally near. The work differs, so overflows differ.
+// In a call with groups, for the same shares:
+// - If no list of a group is full on either engine: all of the above.
+// - If one is full, all queries of that group are not proven. The CPU does not charge the work that
+//   an early exit saves: it may prove a group that overflows on another engine, never the reverse.
 // An engine on another device may have lists that all queries of a call share; one that is full
-// makes all of them not_proven. Status not_run: the engine is lost, and nothing was proven.
+// makes all of them not_proven. Status not_run: the engine is lost, and no proof holds.
 
 /// The first full list of a group, in the order of WorkLists; ok: none is.
 [[nodiscard]] constexpr QueryStatus first_full(const GroupWork& group) noexcept {
@@ -108,30 +107,30 @@ struct QueryResult {
 
 struct PartQueries;  // core/collision/query_tree.hpp
 
-/// An engine as the cycle sees it. `run` takes every query; results[i] belongs to
-/// queries[i]. Precondition: as many results as queries. Cost: bounded by the capacities the
-/// engine was made with.
+/// The interface of an engine to the cycle. `run` processes every query; results[i] belongs to
+/// queries[i]. Precondition: as many results as queries. Cost: bounded by the capacities that the
+/// engine was created with.
 struct Engine {
     void* self = nullptr;
     void (*run)(void* self, std::span<const Query> queries,
                 std::span<QueryResult> results) noexcept = nullptr;
-    // A call costs more than many queries (a launch): who can run them together does.
+    // A call (a launch) costs more than many queries: callers put many queries into one call.
     bool prefers_batches = false;
-    // The same for queries in groups: the work of each is charged to groups[query.group], and no
-    // capacity a query counts. A clearance is refused (bad_query). Null: the engine knows no
-    // groups, and its own capacities hold.
+    // As `run`, for queries in groups: charges the work of each to groups[query.group] and applies
+    // no capacity per query. Refuses clearance queries (bad_query). Null: the engine has no groups
+    // and applies its own capacities.
     void (*run_groups)(void* self, std::span<const Query> queries, std::span<QueryResult> results,
                        std::span<GroupWork> groups) noexcept = nullptr;
 
-    // The same for parts of boxes in float alone, which the engine poses itself, and queries behind
-    // them: as many results as both. Null: it poses none.
+    // As `run_groups`, for parts of boxes in float only, which the engine poses itself, followed by
+    // `queries`: as many results as both together. Null: the engine poses no parts.
     void (*run_parts)(void* self, const PartQueries& parts, std::span<const Query> queries,
                       std::span<QueryResult> results,
                       std::span<GroupWork> groups) noexcept = nullptr;
-    std::uint32_t parts_max = 0;  // of a call, queries behind them included
+    std::uint32_t parts_max = 0;  // in one call, the queries after them included
 
-    // The first stages of a cycle, so many, may go to an engine on the host: they have few queries,
-    // and a launch costs more than those. Both engines give the same results, as said above.
+    // The first `stages` stages of a cycle may run on an engine of the host: they have few queries,
+    // and a launch costs more than those. Both engines return the same results (see above).
     struct Host {
         std::uint32_t stages = 0;
         void* self = nullptr;
@@ -140,7 +139,7 @@ struct Engine {
                            std::span<GroupWork> groups) noexcept = nullptr;
     } host{};
 
-    /// The engine that a stage of a cycle goes to.
+    /// The engine that runs a stage of a cycle.
     [[nodiscard]] Engine of_stage(std::uint32_t stage) const noexcept {
         return stage < host.stages ? Engine{.self = host.self, .run_groups = host.run_groups}
                                    : *this;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sums of a group on an engine that opens all pairs of a tree level together. What is charged
-// is what the CPU charges, by the same functions (charged_rows, charged_leaves, charged_pairs); a
-// group's demand is a sum over its own entries, so no order of threads changes it. What is found
-// behind a full list is not whole, and depends on that order. So a loss is named by the first step
-// at which it happened: up to there every sum is whole. Source: docs/theory/certificate.md, "Stages
-// and groups".
+// Work of a group on an engine that opens all pairs of a tree level together. The engine charges
+// the same work as the CPU, with the same functions (charged_rows, charged_leaves, charged_pairs).
+// A group's demand is a sum over its own entries, so no order of threads changes it. After a list
+// is full, entries are missing, and which ones depends on that order. So the first step that
+// overflowed identifies a loss: every sum is complete up to there. Source:
+// docs/theory/certificate.md, "Stages and groups".
 #pragma once
 
 #include <cstdint>
@@ -33,8 +33,8 @@ struct alignas(16) GroupSums {
 };
 static_assert(sizeof(GroupSums) == 48);
 
-/// Losses in the order of the steps. Of a level the rows come first: they are counted of every pair
-/// that is opened there, the pairs found only in rows that were tested.
+/// Losses in the order of the steps. In each tree level the rows are first: the engine counts them
+/// for every pair that it opens there, but finds pairs only in rows that it tested.
 inline constexpr std::uint32_t kNotLost = 0xffffffffU;
 inline constexpr std::uint32_t kLossesOfALevel = 3;
 inline constexpr std::uint32_t kLevelsOfLoss = kTreeDepthMax + 1;
@@ -77,7 +77,7 @@ inline constexpr std::uint32_t kLossOfRechecks = kLossOfClipping + 2;
     }
 }
 
-/// A group as a batch begins with it.
+/// The sums of a group at the start of a batch.
 [[nodiscard]] constexpr GroupSums sums_of(const GroupWork& group, std::uint32_t sequence) noexcept {
     const WorkLists &share = group.share, &used = group.used;
     return {
@@ -87,8 +87,8 @@ inline constexpr std::uint32_t kLossOfRechecks = kLossOfClipping + 2;
         {used.node_pairs, used.leaf_pairs, used.box_rows, used.triangle_pairs, used.rechecks}};
 }
 
-/// What the batch used. Of a group that is lost its whole share, and of the first full list more:
-/// the rest is not known.
+/// Stores the work of the batch in its group. A lost group has used its whole share of each list,
+/// and more of the first full list: its true work is unknown.
 constexpr void take_sums(const std::uint32_t (&used)[kWorkListCount], std::uint32_t lost,
                          GroupWork& group) noexcept {
     constexpr std::uint32_t WorkLists::*kLists[kWorkListCount] = {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two queries with known results in every batch, so that an engine that always returns
-// the same is found out.
+// Two queries with fixed results in every batch, which detect an engine that always returns the
+// same result.
 #pragma once
 
 #include <cstdint>
@@ -19,13 +19,13 @@ inline constexpr std::uint16_t kKnownAnswerSignature = 0xC5A3;  // both results 
 /// @param mesh  the tetrahedron's place among the engine's surfaces
 [[nodiscard]] Query known_answer_query(std::uint32_t mesh, bool is_near) noexcept;
 
-/// kKnownAnswerSignature, or 0 unless both are right. Of the near one it is enough that it is not
-/// called far: it touches, so it is among the queries that a list may have no place for.
+/// kKnownAnswerSignature if both results are right, else 0. The near result is right if it is not
+/// far, even if a list was full: its pairs touch, so a list may have no place for them.
 [[nodiscard]] std::uint16_t known_answer_signature(const QueryResult& far,
                                                    const QueryResult& near) noexcept;
 
-/// Whether a list that all queries of a batch share was full: then the known-far one is not
-/// proven either, and no result of the batch counts. That is no broken engine.
+/// Whether a list that all queries of a batch share was full: then the far query is not proven
+/// either, and no result of the batch counts. The engine is not broken.
 [[nodiscard]] bool is_batch_lost(const QueryResult& far, const QueryResult& near) noexcept;
 
 }  // namespace axg

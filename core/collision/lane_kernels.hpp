@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What each instruction set's translation unit offers: the same source
+// Kernels of the translation unit of each instruction set: the same source
 // (core/collision/traverse.inl), compiled for its lanes.
 #pragma once
 
@@ -20,8 +20,8 @@ template <class V>
 struct TrianglePair;
 }  // namespace sat
 
-/// Two nodes still to be compared; low_mm: a certified lower bound of the distance of what is in
-/// them.
+/// Two nodes still to be compared; low_mm: a certified lower bound of the distance of their
+/// triangles.
 struct NodePair {
     std::uint32_t a, b;
     float low_mm;
@@ -35,8 +35,8 @@ struct TraversalLists {
     std::uint32_t node_pairs = 0;  // capacities a query
     std::uint32_t triangle_pairs = 0;
     std::uint32_t rechecks = 0;
-    GroupWork* group = nullptr;  // whom the work is charged to
-    bool counts_all = false;     // no early exit: all that another engine would count
+    GroupWork* group = nullptr;  // the group that is charged; null: none
+    bool counts_all = false;     // no early exit: counts all that another engine counts
 };
 
 struct LaneKernels {
@@ -44,8 +44,8 @@ struct LaneKernels {
     unsigned width;
     void (*run)(std::span<const Tree> trees, const TraversalLists& lists, const Query& query,
                 QueryResult& result) noexcept;
-    // Independent pairs: proven apart or not by the shared axes alone, by every stage, and the
-    // distance that is proven as well.
+    // Independent pairs: proven apart or not by the shared axes only; by every stage; and with the
+    // proven distance in addition.
     void (*share_tiles)(const PairTile* tiles, std::size_t count, TileResult* results) noexcept;
     void (*test_tiles)(const PairTile* tiles, std::size_t count, TileResult* results) noexcept;
     void (*measure_tiles)(const PairTile* tiles, std::size_t count, TileResult* results) noexcept;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The operations the certified tests are written in, for one lane (float, double: host, device and
-// recheck). The wide forms live in lanes_avx512.hpp, lanes_avx2.hpp and lanes_neon.hpp; each gives
-// bit for bit what these give.
+// The operations of the certified tests, for one lane (float, double: host, device and recheck).
+// The wide forms are in lanes_avx512.hpp, lanes_avx2.hpp and lanes_neon.hpp; each returns the same
+// bits as these.
 #pragma once
 
 #include "core/base/host_device.hpp"
 
-// In front of a loop over the axes of a pair in V: on a device all of it is written out, unless V
-// says otherwise. No result depends on it.
+// Before a loop over the axes of a pair in V: a device compiler unrolls it, at most kUnrollTo<V>
+// times. No result depends on it.
 #if defined(__CUDA_ARCH__)
 #define AXG_PRAGMA(words) _Pragma(#words)
 #define AXG_UNROLL(V) AXG_PRAGMA(unroll axg::lanes::kUnrollTo<V>)
@@ -17,7 +17,7 @@
 
 namespace axg::lanes {
 
-/// Turns of an axis loop that are written out; no such loop has more than nine.
+/// Turns of an axis loop that are unrolled; no such loop has more than nine.
 template <class V>
 inline constexpr int kUnrollTo = 16;
 

@@ -23,7 +23,7 @@ struct Float8 {
             _mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(index)));
         return {_mm256_i32gather_ps(table, at, 4)};
     }
-    /// Of all lanes; a zero may come out with either sign.
+    /// Least of all lanes; a zero, also of most(), may have either sign.
     AXG_HD float least() const noexcept {
         __m128 m = _mm_min_ps(_mm256_castps256_ps128(v), _mm256_extractf128_ps(v, 1));
         m = _mm_min_ps(m, _mm_movehl_ps(m, m));

@@ -23,7 +23,7 @@ struct Float16 {
             _mm512_cvtepu8_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(index)));
         return {_mm512_permutex2var_ps(_mm512_loadu_ps(table), at, _mm512_loadu_ps(table + 16))};
     }
-    /// Of all lanes; a zero may come out with either sign.
+    /// Least of all lanes; a zero, also of most(), may have either sign.
     AXG_HD float least() const noexcept { return _mm512_reduce_min_ps(v); }
     AXG_HD float most() const noexcept { return _mm512_reduce_max_ps(v); }
 };

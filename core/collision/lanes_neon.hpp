@@ -23,7 +23,7 @@ struct Float4 {
                                  table[index[3]]};
         return load(picked);
     }
-    /// Of all lanes; a zero may come out with either sign.
+    /// Least of all lanes; a zero, also of most(), may have either sign.
     AXG_HD float least() const noexcept { return vminvq_f32(v); }
     AXG_HD float most() const noexcept { return vmaxvq_f32(v); }
 };

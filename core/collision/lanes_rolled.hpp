@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One float lane whose axis loops a device compiler leaves as loops: the off switch of what is
-// written out elsewhere, for a measurement. Bit for bit what float gives.
+// One float lane whose axis loops a device compiler does not unroll, to measure the effect of
+// unrolling. Returns the same bits as float.
 #pragma once
 
 #include "core/base/host_device.hpp"

@@ -6,7 +6,7 @@
 /// Boxes of the triangles of one leaf along the other body's axes: tight, made from moved vertices.
 struct TightBoxes {
     float leaf_low[3], leaf_high[3];  // of all its triangles
-    // Corners are moved first, for the box of them all; what follows is made of them by need.
+    // Corners are moved first, for the box of the leaf; low and high follow from them on demand.
     bool is_spread;
     alignas(64) float corner[3][kNodeWidth];
     alignas(64) float low[3][kNodeWidth];
@@ -29,11 +29,11 @@ struct LeafBox {
     }
 };
 
-/// How a leaf gets into the other body's frame, less an origin: about its own centre.
+/// The motion of a leaf into the other body's frame, less an origin, about its own centre.
 struct LeafMove {
     const Frame& frame;
     const float* centre;
-    float shift[3];  // where the centre gets
+    float shift[3];  // the moved centre
 
     AXG_HD LeafMove(const Frame& f, const Pose& p, const Aabb& box, const float* origin) noexcept
         : frame(f), centre(box.c) {
@@ -53,7 +53,7 @@ struct CentredLanes {
           z(V::load(&v[2][at]) - V::of(centre[2])) {}
 };
 
-/// Moves the vertices of a leaf; `v` takes them unless it is null.
+/// Moves the vertices of a leaf and stores them in `v`, unless it is null.
 AXG_HD void move_vertices(const LeafMove& move, const TreeLeaf& leaf, unsigned count,
                           float (*v)[kNodeWidth], TightBoxes& to) noexcept {
     LeafBox box;
@@ -80,7 +80,7 @@ AXG_HD void move_vertices(const LeafMove& move, const TreeLeaf& leaf, unsigned c
     to.is_spread = true;
 }
 
-/// The same for corners: to the bit what they are as vertices of their triangles.
+/// Moves corners: the same bits as for the vertices of their triangles.
 AXG_HD void move_corners(const LeafMove& move, const LeafCorners& leaf, TightBoxes& to) noexcept {
     LeafBox box;
     for (unsigned at = 0; at < leaf.count; at += kW) {
@@ -95,7 +95,7 @@ AXG_HD void move_corners(const LeafMove& move, const LeafCorners& leaf, TightBox
     to.is_spread = false;
 }
 
-/// Hands moved corners out to the triangles; `v` takes the vertices unless it is null.
+/// Copies moved corners to the triangles, and their vertices to `v`, unless it is null.
 AXG_HD void spread_corners(const Tree& tree, const TreeNode& node, float (*v)[kNodeWidth],
                            TightBoxes& to) noexcept {
     if (to.is_spread) {

@@ -16,7 +16,7 @@ namespace axg::sat {
 /// Inputs of a test in addition to the vertices. docs/theory/accuracy.md, "Constants of a query".
 template <class V>
 struct PairLimits {
-    V d;         // errors of the vertices, as scale_of takes them
+    V d;         // errors of the vertices: d of scale_of
     V margin;    // r' at or above r (1 + 8u); unused without a margin
     V r_square;  // at or above r^2 (1 + 2^-18)
 };
@@ -37,13 +37,13 @@ AXG_HD TrianglePair<V> scaled_pair(const V3<V>* a, const V3<V>* b, V d) noexcept
 }
 
 /// Whether a query with a margin also tries the nine edge crosses and the six in-plane normals by
-/// themselves. Where the triangles are more than the margin apart, their closest direction
-/// separates them: the fifteen would prove only what roundings spoil there.
+/// themselves. If the triangles are more than the margin apart, their closest direction separates
+/// them: the fifteen would only prove pairs that this direction loses to rounding.
 /// Source: docs/theory/accuracy.md, section 2.
 inline constexpr bool kTriesAxesWithMargin = false;
 
-/// What the shared axes left undecided, in the later stages.
-/// @param told  what they decided; not all lanes
+/// The later stages, for lanes that the shared axes left undecided.
+/// @param told  lanes that the shared axes proved apart; not all lanes
 template <bool kMargin, bool kTriesAxes = !kMargin || kTriesAxesWithMargin, class V>
 AXG_HD typename lanes::Traits<V>::Mask apart_by_itself(typename lanes::Traits<V>::Mask told,
                                                        const V3<V>* a, const V3<V>* b,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs of triangles that have nothing to do with one another, 32 at a time, coordinate by
-// coordinate: what a benchmark, a chart or a laboratory puts to the certified test. mm.
+// Independent pairs of triangles, 32 at a time, coordinate by coordinate: the input of the
+// certified test in a benchmark, a chart or the laboratory. mm.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +20,7 @@ struct PairTile {
 
 struct TileResult {
     std::uint32_t apart;  // one bit a pair: proven to share no point
-    // Certified lower bound of the distance, mm; 0 where nothing is proven, and wherever it was not
-    // asked for.
+    // Certified lower bound of the distance, mm; 0 if no bound is proven or none was requested.
     alignas(64) float distance_mm[kTilePairs];
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Queries about the parts of boxes that were all cut alike, as few numbers: where a part's centre
-// lies follows from its place among them, and its pose from that. An engine on a GPU poses them
-// itself; the lines are the same on both sides, so the queries are, bit by bit.
+// Queries about the parts of boxes that were all cut alike, in few numbers: a part's place among
+// them determines its centre, and the centre its pose. An engine on a GPU poses them itself, with
+// the same code as the host, so the queries are equal bit by bit.
 // Source: docs/theory/certificate.md, "Levers once".
 #pragma once
 
@@ -26,13 +26,13 @@ struct TreeCut {
     std::uint32_t unused = 0;
 };
 
-/// What all parts of a task have in common.
+/// The data that all parts of a task share.
 struct alignas(16) QueryTree {
     QueryKind kind = QueryKind::farther;
     bool is_float_only = false;
     // The margin and the axes that are not cut along allow for pruned surfaces.
     bool may_be_pruned = false;
-    bool is_apart = false;  // there, of what was pruned nothing is left: such a part is far
+    bool is_apart = false;                // and pruning left no surface there: such a part is far
     std::uint32_t joints = 0, split = 0;  // PoseProduct::count and split
     double r_mm = 0, pose_error_mm = 0;
     double quarter[kTreeDepthOfParts] = {};  // by level: how far a centre moves
@@ -41,7 +41,7 @@ struct alignas(16) QueryTree {
     Pose fixed[kTreeJointsMax + 1];
 };
 
-/// One box, of whose 2^depth parts each is a query.
+/// One box; each of its 2^depth parts is a query.
 struct alignas(16) TreeRoot {
     double centre[kTreeJointsMax] = {};    // by joint, mm or rad
     std::uint32_t mesh_a = 0, mesh_b = 0;  // Query::mesh_a, Query::mesh_b
@@ -50,7 +50,7 @@ struct alignas(16) TreeRoot {
     std::uint16_t group = 0;  // Query::group
 };
 
-/// The parts of a root come in the order of their places, the first cut first.
+/// The parts of a root are in the order of their places, the first cut first.
 struct PartQueries {
     std::span<const QueryTree> trees{};  // at most kQueryTreesMax
     std::span<const TreeRoot> roots{};
@@ -68,13 +68,13 @@ AXG_HD std::uint32_t lowest_bit(std::uint32_t bits) noexcept {
 #endif
 }
 
-/// A part of a root; says where its centre lies.
+/// A part of a root; computes its centre.
 struct Part {
     const QueryTree& tree;
     const TreeRoot& root;
     std::uint32_t depth, place;
 
-    /// Along the axis of a joint.
+    /// Centre along the axis of a joint, mm or rad.
     AXG_HD double operator()(std::uint32_t joint) const noexcept {
         double centre = root.centre[joint];
         for (std::uint32_t left = tree.cut[joint].levels; left != 0; left &= left - 1) {
@@ -90,7 +90,7 @@ AXG_HD PoseProduct product_of(const QueryTree& tree) noexcept {
     return {tree.joint, tree.fixed, tree.joints, tree.split};
 }
 
-/// All of the query about a part but its pose. True: it is far already, and nothing is to be asked.
+/// Fills the query about a part, except for its pose. True: the part is far without a query.
 AXG_HD bool fill_query(const Part& part, Query& query) noexcept {
     const QueryTree& tree = part.tree;
     const TreeRoot& root = part.root;
@@ -110,7 +110,7 @@ AXG_HD bool fill_query(const Part& part, Query& query) noexcept {
     return is_pruned && tree.is_apart;
 }
 
-/// The whole query; as above.
+/// Fills the whole query; as above.
 AXG_HD bool part_query(const Part& part, Query& query) noexcept {
     query.pose =
         pose_of(product_of(part.tree), part, [](double angle_rad) { return sin_cos(angle_rad); });

@@ -28,7 +28,7 @@ AXG_HD EdgePair<V> edges_of(const V3<V>* a, const V3<V>* b) noexcept {
         {sub(a[1], a[0]), sub(a[2], a[0])}, {sub(b[1], b[0]), sub(b[2], b[0])}, sub(b[0], a[0])};
 }
 
-/// What the axes take of one triangle by itself, whatever it is tested against.
+/// Axis data of one triangle, which do not depend on the triangle it is tested against.
 template <class V>
 struct TriangleAxes {
     V3<V> edge[2], normal;
@@ -69,7 +69,7 @@ struct SharedBounds {
 
 /// @param alpha  largest |coordinate| of a's edges; beta of b's
 /// @param start  a's first vertex: with the edges it bounds every coordinate
-/// @param d      errors of the vertices, as scale_of takes them
+/// @param d      errors of the vertices: d of scale_of
 template <class V>
 AXG_HD SharedBounds<V> shared_bounds(const EdgePair<V>& p, V alpha, V beta, const V3<V>& start,
                                      V d) noexcept {
@@ -164,7 +164,7 @@ struct EdgeProducts {
     V area_a, area_b;  // squares of the normals
 };
 
-/// Of two edges: e0.e0, e0.e1, e1.e1.
+/// Computes e0.e0, e0.e1, e1.e1 of two edges.
 template <class V>
 AXG_HD void edge_products(const V3<V> (&e)[2], V (&out)[3]) noexcept {
     AXG_UNROLL(V)
@@ -186,7 +186,7 @@ AXG_HD TriangleAxes<V> axes_of_triangle(const V3<V>* v) noexcept {
     return t;
 }
 
-/// What the normals n of a and m of b have in common with the edges of the other triangle.
+/// Dot products of the normals n of a and m of b with the other triangle's edges, and with d.
 template <class V>
 struct NormalProducts {
     V nf[2], me[2], nd, md;
@@ -279,7 +279,7 @@ AXG_HD SharedGaps<V> gaps_of(const EdgePair<V>& p, const NormalProducts<V>& y,
     }
     twice_cross_gaps(g, y.nf, y.me, s.twice_cross);
     const V ed[2] = {dot3(p.e[0], p.d), dot3(p.e[1], p.d)};
-    const V fd[2] = {-dot3(p.f[0], p.d), -dot3(p.f[1], p.d)};  // seen from b, a lies at -d
+    const V fd[2] = {-dot3(p.f[0], p.d), -dot3(p.f[1], p.d)};  // seen from b, a is at -d
     const V ef0[2] = {x.ef[0][0], x.ef[1][0]}, ef1[2] = {x.ef[0][1], x.ef[1][1]};
     in_plane_gaps(x.ee, x.area_a, ed, ef0, ef1, s.in_plane_a);
     in_plane_gaps(x.ff, x.area_b, fd, x.ef[0], x.ef[1], s.in_plane_b);
@@ -352,12 +352,12 @@ AXG_HD typename lanes::Traits<V>::Mask margin_excluded(const SharedGaps<V>& g,
     return apart;
 }
 
-/// True only where the triangles share no point (kMargin: are more than r apart). All seventeen
-/// axes; without a margin, kLeavesEarly, the normals alone where they settle every lane, which does
-/// not change the result.
+/// True only where the triangles share no point (kMargin: are more than r apart). Tests all
+/// seventeen axes; kLeavesEarly without a margin: only the normals if they separate every lane,
+/// which does not change the result.
 /// @param start     a's first vertex; |coordinate| of all vertices <= 2^20 mm
 /// @param data      ComputedAxes or StoredAxes: one result
-/// @param d         errors of the vertices, as scale_of takes them
+/// @param d         errors of the vertices: d of scale_of
 /// @param r_square  kMargin: at least r^2 (1 + 2^-18)
 template <bool kMargin, bool kLeavesEarly, class V, class Data>
 AXG_HD typename lanes::Traits<V>::Mask separated_edges(const EdgePair<V>& p, const V3<V>& start,

@@ -80,7 +80,7 @@ static void share_tiles(const PairTile* tiles, std::size_t count, TileResult* re
     }
 }
 
-/// Shared axes; what they leave is gathered from all tiles before the dearer stages see it.
+/// Shared axes; gathers the pairs they leave from all tiles for the more expensive stages.
 static void test_tiles(const PairTile* tiles, std::size_t count, TileResult* results) noexcept {
     LeftPairs left;
     share_tiles(tiles, count, results);
@@ -100,7 +100,7 @@ static void test_tiles(const PairTile* tiles, std::size_t count, TileResult* res
     finish(left, results);
 }
 
-/// The same, and what the closest direction proves of the distance.
+/// The same, and the distance that the closest direction proves.
 static void measure_tiles(const PairTile* tiles, std::size_t count, TileResult* results) noexcept {
     for (std::size_t t = 0; t < count; ++t) {
         results[t].apart = 0;

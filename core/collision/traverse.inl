@@ -39,7 +39,7 @@ struct MovedLeaf {
     std::uint32_t node = kNoLeaf;  // which node of a this is
 };
 
-inline constexpr unsigned kTightKept = 32;  // leaves of b whose boxes along a's axes are kept
+inline constexpr unsigned kTightKept = 32;  // leaves of b whose boxes along a's axes are stored
 
 struct Traversal : QueryConstants {
     // The arrays stay as they are until they are written: clearing them would cost more than a
@@ -131,8 +131,8 @@ AXG_HD bool count_work(std::uint32_t& counter, std::uint32_t more, std::uint32_t
     return true;
 }
 
-/// Charges the query's group; in a query that stands alone nothing is charged. False: its share is
-/// spent, and nothing that the group asks for can be proven.
+/// Charges the query's group; does nothing for a query without a group. False: the group's share is
+/// spent, and none of its queries can be proven.
 AXG_HD bool charge(Traversal& w, std::uint32_t WorkLists::*list, std::uint32_t more) noexcept {
     GroupWork* const group = w.lists.group;
     if (group == nullptr) {
@@ -343,7 +343,7 @@ AXG_HD bool near_triangles(Traversal& w, NodePair at, PairList& out) noexcept {
     return true;
 }
 
-/// What moving a leaf reads.
+/// Prefetches the memory that moving a leaf reads.
 AXG_HD void fetch_leaf(const Tree& tree, const TreeNode& node) noexcept {
     if (node.leaf == kNoLeaf) {
         return;
@@ -395,8 +395,8 @@ AXG_HD std::uint32_t near_child(Traversal& w, const TreeNode& a, const MovedChil
     return bits;
 }
 
-/// Opens both nodes: every child of a left against every child of b left. Pairs of leaves are
-/// judged at once, while the leaf of a is moved; the others wait.
+/// Opens both nodes: every child of a left against every child of b left. Tests pairs of leaves at
+/// once, while the leaf of a is moved, and pushes the others.
 AXG_HD bool open_both(Traversal& w, std::uint32_t& open, const TreeNode& a,
                       const TreeNode& b) noexcept {
     const std::uint32_t bits_b =

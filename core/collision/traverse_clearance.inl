@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The certified clearance: part of traverse.inl. The value of a pair of triangles is the largest
-// lower bound known of its distance (boxes on the way, float direction, double direction); the
+// proven lower bound of its distance (boxes above it, float direction, double direction). The
 // clearance is the least value of all pairs, so it does not depend on the order in which they are
-// visited, and bounds only cut what could not have lowered it.
+// visited, and bounds only skip pairs that could not lower it.
 
 /// Bounds are not negative, so their bits sort as they do. Places fit ten bits.
 AXG_HD std::uint64_t key_of(float low, unsigned i, unsigned j) noexcept {
@@ -119,8 +119,8 @@ static unsigned nearest_triangles(Traversal& w, NodePair at, const TreeNode& a, 
     return count;
 }
 
-/// The clearance of pairs that are proven apart and nothing more: above 0, below anything that can
-/// be told in mm.
+/// The clearance of pairs that are only proven apart: above 0, and below any length that matters in
+/// mm.
 inline constexpr double kApart = 0x1p-1000;
 
 /// Certified distance of one pair in double along its closest direction.
@@ -176,7 +176,7 @@ inline constexpr double kApart = 0x1p-1000;
     return true;
 }
 
-/// Opens one pair of nodes, nearest children last so that they are taken first. False: stop the
+/// Opens one pair of nodes, nearest children last so that they are opened first. False: stop the
 /// traversal.
 static bool visit_nearest(Traversal& w, std::uint32_t& open, NodePair at, double& best) noexcept {
     const TreeNode& a = w.tree_a.nodes.data()[at.a];

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The numbers of one query that every engine must have to the bit: frames, slacks and margins,
 // and the vertices of the recheck. mm. Part of traverse.inl and of the CUDA kernels: no include
-// guard, no namespace of its own; box_test.inl stands before it. Source: docs/theory/accuracy.md,
+// guard, no namespace of its own; include box_test.inl before it. Source: docs/theory/accuracy.md,
 // section 4.
 
-/// What a query comes to before any node is opened.
+/// Constants of a query, computed before any node is opened.
 struct QueryConstants {
     Frame a_in_b, b_in_a;
     float tight_slack;  // of tight boxes: covers their roundings, the margin and the pose's error
@@ -29,8 +29,8 @@ AXG_HD void set_frame(Frame& f, const Pose& p, double slack) noexcept {
     f.slack = up(slack);
 }
 
-/// What the proof requires of a query. NaN and infinity fail by their bits, and fail the
-/// comparisons besides.
+/// Whether a query meets the requirements of the proof. NaN and infinity fail by their bits, and
+/// also fail the comparisons.
 AXG_HD bool usable(const Query& q) noexcept {
     bool good = is_finite(q.r_mm) && is_finite(q.pose_error_mm) && q.r_mm >= 0 &&
                 q.r_mm <= kMarginMmMax && q.pose_error_mm >= 0 && q.pose_error_mm <= 1.0;
@@ -58,8 +58,8 @@ AXG_HD void set_constants(QueryConstants& c, const Query& q, float reach_a,
     // Largest |coordinate| that can appear. The floor covers what underflow costs where every
     // coordinate is next to nothing.
     const double coordinate_mm = t + 3.0 * double(reach_a) + 2.0 * double(reach_b) + 0x1p-40;
-    // Of any vertex of a in b's frame: arithmetic and the pose's own. In float what depends on its
-    // leaf comes on top.
+    // Errors of any vertex of a in b's frame: arithmetic and pose. In float, leaf_d adds the part
+    // that depends on the leaf.
     c.d32 = up(0x1p21 * (0x1p-43 * coordinate_mm + q.pose_error_mm)) + 0x1p-90F;
     c.d64 = 0x1p50 * (0x1p-50 * coordinate_mm + q.pose_error_mm) * (1.0 + 0x1p-50);
     c.has_margin = margin;
@@ -94,7 +94,7 @@ AXG_HD V moved_about(const Frame& f, int k, float shift, V x, V y, V z) noexcept
                fma(V::of(f.r[k][1]), y, fma(V::of(f.r[k][2]), z, V::of(shift))));
 }
 
-/// d of the theorem for vertices of a leaf moved so: of its box, the largest half width.
+/// d of the theorem for vertices of a leaf moved so: adds 3/4 of its box's largest half width.
 AXG_HD float leaf_d(float d32, const Aabb& box) noexcept {
     return lanes::fma(0.75F, lanes::max(lanes::max(box.h[0], box.h[1]), box.h[2]), d32);
 }

@@ -59,7 +59,7 @@ float rounded_up(double d) noexcept {
     return static_cast<double>(f) < d ? std::nextafter(f, std::numeric_limits<float>::max()) : f;
 }
 
-/// a - b, or the next double above it where the subtraction lost something (Knuth's two-sum tells).
+/// a - b, or the next double above it if the subtraction rounded down (by Knuth's two-sum).
 double difference_up(double a, double b) noexcept {
     const double d = a - b;
     const double minus_b = d - a;
@@ -163,8 +163,8 @@ class Grouper {
         return best.at;
     }
 
-    /// At most 32 groups. First everything that would not fit below a child is cut, then the
-    /// largest areas.
+    /// At most 32 groups. First cuts the groups that would not fit below a child, then those with
+    /// the largest areas.
     [[nodiscard]] std::vector<Group> split(Indices items) {
         std::size_t fits = kNodeWidth;  // what one child can hold on the fewest further levels
         while (fits * kNodeWidth < items.size()) {
@@ -416,7 +416,7 @@ void put(LeafCorners& corners, unsigned at, const float (&p)[3]) noexcept {
     }
 }
 
-/// Bit by bit, so that -0 stays what it is. Returns count where there is none.
+/// Compares bit by bit, so that -0 is not 0. Returns count if p is not listed.
 unsigned find(const LeafCorners& corners, const float (&p)[3]) noexcept {
     const auto bits = [](float x) { return __builtin_bit_cast(std::uint32_t, x); };
     for (unsigned at = 0; at < corners.count; ++at) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A body's 32-wide tree of boxes: leaves of at most 32 triangles, boxes in the body's frame,
-// structure of arrays, so that one test takes one box of a body against all children of a node of
+// structure of arrays, so that one test compares one box of a body with all children of a node of
 // the other. Built at init, read-only in the cycle. Splits by the surface area heuristic (MacDonald
 // and Booth, 1990); depth bounded by kTreeDepthMax for any input.
 #pragma once
@@ -30,19 +30,19 @@ struct alignas(64) TreeNode {
     std::uint32_t count;        // children in use
     std::uint32_t first_child;  // index of the first child node; unused in a leaf
     std::uint32_t leaf;         // index into leaves; kNoLeaf: an inner node
-    std::uint32_t more;         // of a leaf: what moving it is charged beyond one entry
+    std::uint32_t more;         // of a leaf: charge for moving it, beyond one entry
 };
 inline constexpr std::uint32_t kNoLeaf = 0xffffffffU;
 
-/// TreeNode::more of a leaf with more than kNodeWidth corners: its vertices are moved, three times
-/// as many.
+/// TreeNode::more of a leaf with more than kNodeWidth corners: the engine moves its vertices, three
+/// times as many.
 inline constexpr std::uint32_t kMoreForVertices = 2;
 
-/// Of WorkLists::box_rows, for a child of a where both nodes are opened.
+/// Charge to WorkLists::box_rows for a child of a, if both nodes are opened.
 [[nodiscard]] AXG_HD constexpr std::uint32_t charged_rows(const TreeNode& child) noexcept {
     return 1 + child.more;
 }
-/// Of WorkLists::leaf_pairs.
+/// Charge to WorkLists::leaf_pairs.
 [[nodiscard]] AXG_HD constexpr std::uint32_t charged_leaves(const TreeNode& a,
                                                             const TreeNode& b) noexcept {
     return 1 + a.more + b.more;
@@ -69,13 +69,13 @@ struct TreeData {
     std::uint32_t depth = 0;
 };
 
-/// Whether every engine can take the mesh: triangles, all finite, within kCoordinateMmMax.
+/// Whether every engine can use the mesh: triangles, all finite, within kCoordinateMmMax.
 [[nodiscard]] bool has_usable_triangles(const Mesh& mesh) noexcept;
 
 /// Largest |coordinate| of any vertex, mm.
 [[nodiscard]] float reach_of(const Mesh& mesh) noexcept;
 
-/// In TreeShape::nodes: what stands beside it is a count of triangles.
+/// Marks a leaf in TreeShape::nodes: the other bits count its triangles.
 inline constexpr std::uint8_t kLeafMark = 0x80;
 
 /// Finds which triangles share a leaf and which nodes a parent. Allocates; init only, and slow:
@@ -83,11 +83,11 @@ inline constexpr std::uint8_t kLeafMark = 0x80;
 /// Precondition: 1 to kTrianglesMax triangles, finite, |coordinate| <= kCoordinateMmMax.
 [[nodiscard]] TreeShape group_triangles(std::span<const Triangle> triangles);
 
-/// What a mesh brought along, or else what group_triangles() finds for it.
+/// The shape stored in the mesh, or else the result of group_triangles().
 [[nodiscard]] TreeShape shape_of(const Mesh& mesh);
 
-/// Whether a shape from outside is one of so many triangles: 1 to kNodeWidth children, no deeper
-/// than kTreeDepthMax, each triangle in exactly one leaf. Linear time.
+/// Whether a shape from outside fits `triangle_count` triangles: 1 to kNodeWidth children, not
+/// deeper than kTreeDepthMax, each triangle in exactly one leaf. Linear time.
 [[nodiscard]] bool is_sound(const TreeShape& shape, std::size_t triangle_count);
 
 struct TreeSize {
@@ -121,7 +121,7 @@ struct Tree {
 struct TreeBodies {
     std::vector<TreeData> trees;
     std::vector<float> reach_mm;    // largest |coordinate| of each
-    std::uint32_t tree_levels = 1;  // of pairs of nodes that two of them may take to open
+    std::uint32_t tree_levels = 1;  // levels of node pairs that a query about two may open
 };
 
 }  // namespace axg

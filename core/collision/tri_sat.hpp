@@ -62,7 +62,7 @@ AXG_HD V scale_of(V m, V d) noexcept {
     return lanes::Traits<V>::of(9.0 * double(lanes::Traits<V>::kUnit)) * (m + d);
 }
 
-/// What L proves: the gap between the projections, and the bound it has to exceed.
+/// The gap between the projections on L, and the bound that it must exceed to prove "separated".
 template <class V>
 struct AxisGap {
     V gap, bound;

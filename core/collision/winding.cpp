@@ -13,7 +13,7 @@ namespace axg {
 namespace {
 
 /// A ray from the point along axis k, upwards or downwards; i, j, k are in cyclic order, so that
-/// turning the axes keeps every orientation.
+/// permuting the axes preserves every orientation.
 struct Ray {
     int i = 0, j = 1, k = 2;
     double sign = 1;
@@ -62,7 +62,7 @@ std::uint32_t children_on(const Ray& ray, const TreeNode& node) noexcept {
     return bits;
 }
 
-/// Sign of (a - p) x (b - p) in the plane of i and j: 1 when p lies left of the way from a to b.
+/// Sign of (a - p) x (b - p) in the plane of i and j: 1 if p is left of the line from a to b.
 int side_of_edge(const Ray& ray, const Corner& a, const Corner& b, RayWork& work) noexcept {
     const ExactSign found = sign_of_turn({two_sum(a.i, -ray.p_i), two_sum(a.j, -ray.p_j)},
                                          {two_sum(b.i, -ray.p_i), two_sum(b.j, -ray.p_j)});
@@ -72,7 +72,7 @@ int side_of_edge(const Ray& ray, const Corner& a, const Corner& b, RayWork& work
 
 /// Whether the edge from a to b passes the half line from the point in direction +i: 1 upwards (in
 /// j), -1 downwards. A corner level with the point counts as below it, and an edge through the
-/// point as left of it: the point stands for one a little further along i, and less along j.
+/// point as left of it: as if the point moved a little along +i, and much less along +j.
 int crossing(const Ray& ray, const Corner& a, const Corner& b, RayWork& work) noexcept {
     const bool a_above = a.j > ray.p_j, b_above = b.j > ray.p_j;
     if (a_above == b_above) {
@@ -99,7 +99,7 @@ int side_of_plane(const Ray& ray, const std::array<Corner, 3>& v, RayWork& work)
     return found.sign;
 }
 
-/// Adds what triangle n of a leaf contributes. False: the point lies on it.
+/// Adds the contribution of triangle n of a leaf. False: the point is on the triangle.
 bool add_triangle(const Ray& ray, const TreeLeaf& leaf, unsigned n, Winding& out,
                   RayWork& work) noexcept {
     std::array<Corner, 3> v;

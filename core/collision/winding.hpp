@@ -17,7 +17,7 @@
 namespace axg {
 
 /// A body with an inside: the tree of its whole surface, and which of its triangles belong to
-/// closed shells. What is open bounds nothing, and has no part in the count.
+/// closed shells. Open shells bound nothing, and do not count.
 struct Solid {
     Tree tree;
     std::span<const std::uint32_t> closed;  // [leaves] bit i: triangle i is of a closed shell
@@ -28,7 +28,7 @@ struct Solid {
                                                       std::span<const TreeLeaf> leaves,
                                                       std::span<const std::uint8_t> is_closed);
 
-/// Points that are queried lie on this grid, so that no product of three differences can underflow.
+/// Grid of all queried points, so that no product of three differences can underflow.
 inline constexpr double kPointGridMm = 0x1p-34;
 
 /// The nearest point of that grid. Precondition: |coordinate| below 2^17.
@@ -37,11 +37,11 @@ inline constexpr double kPointGridMm = 0x1p-34;
     return {(p.x + kRound) - kRound, (p.y + kRound) - kRound, (p.z + kRound) - kRound};
 }
 
-/// What several rays of one query have used together; a counter beyond its capacity is a status.
+/// Work of all rays of one query together; a counter beyond its capacity sets the status.
 struct RayWork {
     QueryStatus status = QueryStatus::ok;
     std::uint32_t nodes = 0;        // opened; against Capacities::node_pairs
-    std::uint32_t triangles = 0;    // looked at; against Capacities::triangle_pairs
+    std::uint32_t triangles = 0;    // tested; against Capacities::triangle_pairs
     std::uint32_t exact_signs = 0;  // beyond double; against pose_rechecks()
 };
 
@@ -51,7 +51,7 @@ struct Winding {
 };
 
 /// The winding number of the closed shells of `solid` around `point`, body frame, mm.
-/// Precondition: the point lies on the grid and on no triangle of a closed shell; |coordinate|
+/// Precondition: the point is on the grid and on no triangle of a closed shell; |coordinate|
 /// below 2^17; the tree has a node. Cost: the nodes and triangles above the point along the ray
 /// that leaves the body's box soonest, within the capacities. Allocates nothing.
 [[nodiscard]] Winding winding_number(const Solid& solid, const Vec3d& point,

@@ -88,7 +88,8 @@ AxisCaps AckLedger::highest_from(std::uint64_t number) const noexcept {
     return caps;
 }
 
-/// Of every permit from the oldest one on that any of the last samples names.
+/// Returns the highest caps of every permit from the oldest one on that any of the last samples
+/// names.
 AxisCaps AckLedger::highest_in(std::uint64_t samples) const noexcept {
     std::uint64_t oldest = samples <= named_.size() ? newest_ : 0;
     for (std::uint64_t i = 0; i < std::min<std::uint64_t>(samples, named_.size()); ++i) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which caps a board may be keeping that names a permit by the low four bits of its number. The
-// same bits come again with every sixteenth permit, and a board that slows down names an old permit
-// for as long as that takes: so of all permits that the bits may mean the highest caps count.
+// The caps that may be in force on a board that names a permit by the low four bits of its number.
+// Every sixteenth permit has the same bits, and a board names an old permit until it has slowed
+// down: the ledger uses the highest caps of all permits that the bits may mean.
 // Source: docs/reference/board.md, "The cap".
 #pragma once
 
@@ -23,9 +23,9 @@ inline constexpr std::uint8_t kCapRapid{kSpeedCapRapid};
     caps.fill(kCapRapid);
     return caps;
 }
-/// What the cap and the mask of a permit say of each axis; bit 7 is for axes 7 and up.
+/// Returns the cap of each axis by a permit's cap and mask; bit 7 is for axes 7 and up.
 [[nodiscard]] AxisCaps caps_of_permit(std::uint8_t cap, std::uint8_t mask) noexcept;
-/// Of each axis the higher one.
+/// Returns the higher cap of each axis.
 [[nodiscard]] AxisCaps higher_caps(const AxisCaps& a, const AxisCaps& b) noexcept;
 
 enum class AckStatus : std::uint8_t {
@@ -33,49 +33,49 @@ enum class AckStatus : std::uint8_t {
     none,         // the sample names no permit
     known,
 };
-/// Of an ack that is not known, every axis may run at rapid.
+/// With an `unknown` ack or none, every axis may run at rapid.
 struct AckedCaps {
     AckStatus status = AckStatus::none;
     AxisCaps caps = rapid_caps();
 };
 
-/// What is known with a sample of the caps that its board keeps.
+/// Upper bounds of the caps in force on the board, by one sample.
 struct CapFacts {
     AckStatus status = AckStatus::none;
-    // The highest that it can have kept since the instant of its positions. Where they have no age
-    // that is what the sample names, else every permit from the one named by a sample before it on.
+    // The highest since the instant of the sample's positions. Without an age: of the permit that
+    // the sample names. With an age: of every permit from the one on that an earlier sample named.
     AxisCaps acked = rapid_caps();
-    // And since the instant of positions 16 samples before. A sample that names none lets every
-    // axis run at rapid.
+    // The highest since the instant of the positions 16 samples before. After a sample that names
+    // no permit, every axis may run at rapid.
     AxisCaps since = rapid_caps();
 };
 
-/// Positions that were latched earlier than so many samples before: every axis may run at rapid.
+/// Largest age of positions, in samples: with older positions every axis may run at rapid.
 inline constexpr std::uint32_t kAgeSamplesMax = 16;
 
 class AckLedger {
   public:
-    /// A new session: no permit of before is ever named.
+    /// Begins a new session: the board no longer names earlier permits.
     void clear() noexcept { *this = AckLedger(); }
-    /// A permit is sent. Its number is one more than that of the last one, or nothing of before is
-    /// known.
+    /// Records a sent permit. Discards all earlier permits if its number is not one more than that
+    /// of the last one.
     void note_sent(std::uint8_t live_counter, const AxisCaps& caps) noexcept;
-    /// A sample names a permit. Permits that were sent after its latch do not make the bound lower.
-    /// Precondition: below 16.
+    /// Records the permit that a sample names. Permits sent after its latch do not lower the bound.
+    /// Precondition: `nibble` is below 16.
     [[nodiscard]] AckedCaps note_ack(std::optional<std::uint8_t> nibble) noexcept;
-    /// The same of a board that names a permit for one of its last 16 samples or none, with one
-    /// permit a sample at most: what the bits mean is then known.
-    /// @param lost  samples before this one that were not heard: it may be older by so many
+    /// The same for a board that names a permit for one of its last 16 samples or none, with at
+    /// most one permit a sample: the bits then identify the permit.
+    /// @param lost  samples lost before this one: the permit may be older by that many
     [[nodiscard]] AckedCaps note_recent_ack(std::optional<std::uint8_t> nibble,
                                             std::uint64_t lost = 0) noexcept;
-    /// Once a sample, of a board that names such a permit first, and may go on naming it however
-    /// long it slows down; with what follows from the 16 samples before it. Source:
-    /// docs/reference/board.md, rule (i).
-    /// @param age_samples  a sample so many before was latched no later than these positions
+    /// Records one sample of a board that first names such a permit, and may go on naming it for as
+    /// long as it slows down. Call once a sample; the result covers the 16 samples before it too.
+    /// Source: docs/reference/board.md, rule (i).
+    /// @param age_samples  the sample that many before was latched no later than these positions
     [[nodiscard]] CapFacts note_sample(std::optional<std::uint8_t> nibble, std::uint64_t lost = 0,
                                        std::uint32_t age_samples = 0) noexcept;
 
-    /// So many permits were sent after the oldest one that the last ack may mean.
+    /// Number of permits sent after the oldest one that the last ack may mean.
     [[nodiscard]] std::uint64_t behind() const noexcept { return newest_ - oldest_; }
 
   private:
@@ -89,11 +89,11 @@ class AckLedger {
     std::array<std::uint64_t, kNibbles> forgotten_last_{};  // the newest of each
     // Numbers from kKept on, so that they agree with the live counter; 0: none was sent.
     std::uint64_t newest_ = 0, first_ = 0;
-    std::uint64_t oldest_ = 0;  // that the last ack may mean
-    // The same of the last samples; 0: none.
+    std::uint64_t oldest_ = 0;  // permit that the last ack may mean
+    // `oldest_` at each of the last samples; 0: none.
     std::array<std::uint64_t, kSamples + kAgeSamplesMax> named_{};
     std::uint64_t samples_ = 0;
-    std::optional<std::uint8_t> last_{};  // what the last sample named
+    std::optional<std::uint8_t> last_{};  // nibble of the last sample
 };
 
 }  // namespace axg

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contents of a permit beyond permit or stop. Advisories: no permit and no proof depends on
-// it. Source: docs/reference/states.md, "Advisories".
+// Contents of a permit in addition to permit or stop. Advisories: no permit and no proof depends
+// on them. Source: docs/reference/states.md, "Advisories".
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ struct Advisories {
     std::uint8_t speed_cap = kSpeedCapRapid;                 // 1/250 of rapid
     ClearanceLevel clearance_level = ClearanceLevel::clear;  // of the pair whose level is worst
     std::uint32_t pair = kNoIndex;  // Machine::pairs, which; kNoIndex: all are clear
-    double distance_mm = 0;         // that it is proven to keep
+    double distance_mm = 0;         // certified distance of that pair
 };
 
 }  // namespace axg

@@ -36,8 +36,8 @@ void CapControl::ask(const CapOrder& order, bool is_urgent) noexcept {
     is_urgent_ = is_urgent;
 }
 
-/// Nothing that was looked at is proven: all axes crawl, and where the proof of that fails too they
-/// are held.
+/// The search proved no order: orders a crawl of all axes, and a hold if the proof of the crawl
+/// fails too.
 void CapControl::crawl(const CapCycle& cycle) noexcept {
     if (!are_same(order_, kCrawlOfAll)) {
         order_ = kCrawlOfAll;
@@ -56,7 +56,7 @@ void CapControl::fall(const CapCycle& cycle) noexcept {
     const CapOrder& wish = cycle.wish.best;
     const bool binds_more = (wish.mask & ~order_.mask) != 0;
     if (cycle.is_slowing && !binds_more && 2 * wish.cap > order_.cap) {
-        return;  // each further order begins the wait for its acknowledgement anew
+        return;  // each further order restarts the wait for its acknowledgement
     }
     if (is_within(wish, cycle.proven)) {
         order_ = wish;

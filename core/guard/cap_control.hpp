@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which cap the next permit orders, and of which axes: down at once to what a search found, and up
-// only by what is proven. Pure, from cycle to cycle. It enters no proof: whatever it orders, a
-// permit is sent for what was proven with those caps. Source: docs/reference/board.md, "Which
-// order".
+// Chooses the cap that the next permit orders, and its axes: lowers it at once to the result of a
+// search, and raises it only to a proven one. Pure, from cycle to cycle. No proof depends on it:
+// every permit is sent for a proof with the caps that it orders. Source: docs/reference/board.md,
+// "Which order".
 #pragma once
 
 #include <cstdint>
@@ -20,10 +20,10 @@ struct CapOrder {
     std::uint8_t mask = 0;  // bit i: it binds axis i; bit 7 binds axes 7 and up
 };
 
-/// What a search found a little later, if the axes go on as they do now.
+/// Result of a search: what is proven a little later, if the axes go on as they do now.
 struct CapWish {
-    CapOrder best{};            // of what is proven, the one that costs least
-    bool is_kept_fine = true;   // what was ordered last is proven
+    CapOrder best{};            // the proven order that costs least
+    bool is_kept_fine = true;   // the last order is proven
     bool is_any_proven = true;  // else `best` is a crawl of all axes
 };
 
@@ -31,25 +31,25 @@ struct CapCycle {
     std::int64_t sample_us = 0;  // instant of the sample
     CapWish wish{};
     bool is_proven = false;   // for a longer validity than the least
-    bool is_slowing = false;  // the board acknowledges higher caps than were ordered last
-    bool is_asked = false;    // the proof was asked about `asked()`, in this very cycle
+    bool is_slowing = false;  // the board acknowledges higher caps than the last order
+    bool is_asked = false;    // this cycle tried the proof with `asked()`
     AxisCaps proven{};        // no axis' cap in the next permit may be higher
 };
 
 class CapControl {
   public:
-    /// Whether the cycle of this sample should ask the proof about `asked()`.
+    /// Whether the cycle of this sample should try the proof with `asked()`.
     [[nodiscard]] bool asks(std::int64_t sample_us) const noexcept;
-    /// An order that has a higher cap for some axis.
+    /// The order to try; it has a higher cap for some axis.
     [[nodiscard]] const CapOrder& asked() const noexcept { return asked_; }
-    /// What the permit of this cycle orders. Precondition: samples in order of time; the order in
-    /// force is within `proven`.
+    /// Returns the order of this cycle's permit. Precondition: samples in order of time; the order
+    /// in force is within `proven`.
     CapOrder update(const CapCycle& cycle) noexcept;
 
     [[nodiscard]] const CapOrder& order() const noexcept { return order_; }
-    /// As another one has it, which this one only follows.
+    /// Sets the order that another instance chose; this one only follows it.
     void set_order(const CapOrder& order) noexcept { order_ = order; }
-    /// Held where it stands for so long that a person has to be told.
+    /// Whether a hold has lasted for so long that a person must be notified.
     [[nodiscard]] bool is_held(std::int64_t now_us) const noexcept {
         return order_.cap == kCapHold && now_us - held_since_us_ >= kCapHeldUs;
     }
@@ -65,9 +65,9 @@ class CapControl {
     std::int64_t room_since_us_ = 0, asked_us_ = INT64_MIN, held_since_us_ = 0;
 };
 
-/// No axis has a higher cap.
+/// Whether no axis has a higher cap in the order than in `caps`.
 [[nodiscard]] bool is_within(const CapOrder& order, const AxisCaps& caps) noexcept;
-/// What binds every axis that one of the two binds, by the lower cap.
+/// Returns an order that binds every axis of either order, by the lower cap.
 [[nodiscard]] CapOrder lower_order(const CapOrder& a, const CapOrder& b) noexcept;
 
 }  // namespace axg

@@ -26,7 +26,7 @@ double cap_answer_seconds(const Machine& machine) noexcept {
         slowest_s = std::max(slowest_s, axis.speed_max / axis.acceleration_max + ramp_s);
     }
     // A planner that averages its commands has half of the acceleration.
-    // What was announced before the order is followed as it was announced.
+    // The axes follow what the board announced before the order.
     const double periods = kAnswerPeriods + machine.can.look_ahead_samples;
     return machine.guard.cap_lead_s + 2 * slowest_s + periods * machine.can.sample_us * 1e-6 +
            age_seconds(machine).most;
@@ -45,7 +45,7 @@ AxisCaps CapGuard::bound_caps(const CapOrder& order) const noexcept {
     return higher_caps(facts_.acked, caps_of_permit(order.cap, order.mask));
 }
 
-/// The board may keep more than was ordered: it still slows down.
+/// Whether an acknowledged cap is above the order: the board still slows down.
 bool CapGuard::is_above() const noexcept {
     const AxisCaps ordered = caps_of_permit(order().cap, order().mask);
     bool is_any = false;
@@ -59,7 +59,7 @@ bool CapGuard::asks_raise() const noexcept {
     return facts_.status == AckStatus::known && control_.asks(latched_us_);
 }
 
-/// Since an earlier sample it has come farther than any cap allows that may have been in force.
+/// Whether the axis moved farther since `before` than any cap allows that may have been in force.
 bool CapGuard::is_too_fast(std::uint32_t axis, const Seen& before) const noexcept {
     const Axis& of = machine_->axes[axis];
     const Seen& last = seen_[(seen_count_ - 1) % kSeen];
@@ -76,7 +76,7 @@ bool CapGuard::is_too_fast(std::uint32_t axis, const Seen& before) const noexcep
     return way > most;
 }
 
-/// Over one period and over more: the longer, the less do the errors of two samples hide.
+/// Checks 1, 4 and 16 periods: over a longer time, the errors of two samples hide less.
 void CapGuard::watch_speeds() noexcept {
     const std::uint64_t newest = seen_count_ - 1;
     for (const std::uint64_t back : {1U, 4U, kSeen - 1}) {
@@ -89,7 +89,7 @@ void CapGuard::watch_speeds() noexcept {
     }
 }
 
-/// An order to slow down has its time; each further one begins it anew.
+/// Checks the time limit of an order to slow down; each further order restarts it.
 void CapGuard::watch_answer() noexcept {
     const double waited_s = static_cast<double>(latched_us_ - fell_us_) * 1e-6;
     if (broken_.kind == CapBreak::none && is_above() && waited_s > cap_answer_seconds(*machine_)) {
@@ -103,7 +103,7 @@ void CapGuard::note(const AxisSnapshot& snapshot, const CapFacts& facts, bool is
         return;
     }
     facts_ = facts;
-    // Of axes that are not there nothing is recorded: a replay must come to the same order.
+    // No record contains axes that the machine lacks: a replay must choose the same order.
     std::fill(facts_.acked.begin() + static_cast<std::ptrdiff_t>(machine_->axes.size()),
               facts_.acked.end(), kCapRapid);
     latched_us_ = snapshot.latched_us;
@@ -145,10 +145,10 @@ void CapGuard::note_fall(const CapOrder& before) noexcept {
 void CapGuard::set_order(const CapOrder& order) noexcept {
     const CapOrder before = control_.order();
     control_.set_order(order);
-    note_fall(before);  // the board has its time from this order on, too
+    note_fall(before);  // the board's time limit starts with this order, too
 }
 
-/// Whatever it orders was proven: the bounds of the proof were no lower.
+/// Orders only proven caps: the bounds of the proof were no lower.
 void CapGuard::order_next(const StopCycle& cycle, const CapWish* wish) noexcept {
     const CapOrder before = order();
     const bool is_asked = asks_raise();
@@ -174,7 +174,7 @@ void CapGuard::judge(const StopCycle& cycle, const CapWish* wish, bool is_armed,
     if (!is_on()) {
         return;
     }
-    if (!is_armed) {  // nothing is ordered any more: from the next proof on, every axis is at rapid
+    if (!is_armed) {  // no more orders: from the next proof on, every axis is at rapid
         result.has_permit = result.has_permit && order().cap == kCapRapid;
         control_ = CapControl();
     } else if (!cycle.is_jog) {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The enforced cap on the engine's side of a guard: which speeds a certificate may take for
-// granted, which cap the next permit orders, and whether the board keeps what its samples
-// acknowledge. Pure, from cycle to cycle, nothing is reserved. Source: docs/reference/board.md,
-// "The cap".
+// The enforced cap on the engine's side of a guard: bounds the speeds of a certificate, orders the
+// cap of the next permit, and checks that the board obeys the caps that its samples acknowledge.
+// Pure, from cycle to cycle; reserves no memory. Source: docs/reference/board.md, "The cap".
 #pragma once
 
 #include <array>
@@ -18,10 +17,10 @@
 
 namespace axg {
 
-/// From an order to slow down until the samples acknowledge it, s, at the latest.
+/// Longest time from an order to slow down until the samples acknowledge it, s.
 [[nodiscard]] double cap_answer_seconds(const Machine& machine) noexcept;
 
-/// A sample so many before was latched no later than the positions of one; 0: they have no age.
+/// Returns n: sample k - n was latched no later than the positions of sample k. 0: no age.
 [[nodiscard]] std::uint32_t age_samples(const Machine& machine) noexcept;
 
 class CapGuard {
@@ -32,28 +31,29 @@ class CapGuard {
     [[nodiscard]] bool is_on() const noexcept {
         return !is_ignored_ && machine_->guard.cap != CapPromise::none;
     }
-    /// A recorded board cannot keep what is ordered now, and named permits of another guard: every
-    /// axis may run at rapid.
+    /// For a recorded board, which cannot obey present orders and named permits of another guard:
+    /// every axis may run at rapid.
     void ignore() noexcept { is_ignored_ = true; }
 
-    /// Every snapshot, and what is known of the permit that it names.
-    /// @param is_first  nothing before it counts
-    /// @param error  of each axis, mm or rad: how far a sample may be off
+    /// Records a snapshot, and the caps of the permit that it names. Call it for every snapshot.
+    /// @param is_first  earlier snapshots no longer count
+    /// @param error  largest error of a sample of each axis, mm or rad
     void note(const AxisSnapshot& snapshot, const CapFacts& facts, bool is_first,
               const std::array<double, kAxesMax>& error) noexcept;
 
-    /// Before the certificate's `prove`: no axis is faster than the higher one of what the board
-    /// acknowledges and what the permit for this sample will order. Where a raise is due, the
-    /// longer permit is asked about with that. The same for the same snapshots, until `judge`.
+    /// Call before the certificate's `prove`. Bounds the speed of each axis by the higher of two
+    /// caps, the acknowledged one and the one ordered last. If a raise is due, the certificate
+    /// tries the longer permit with the raised bounds. Same bounds for the same snapshots, until
+    /// `judge`.
     void bound(StopCertificate& certificate) const noexcept;
 
-    /// After the judgement of what was proven with those bounds: the cap that the permit orders, or
-    /// a stop where the board does not keep its promise.
-    /// @param wish  what is proven a little later; null: nothing is known
+    /// Call after the verdict on the proof with those bounds. Adds the cap that the permit orders,
+    /// or a stop if the board broke its promise.
+    /// @param wish  result of the search; null: no result
     void judge(const StopCycle& cycle, const CapWish* wish, bool is_armed,
                CycleResult& result) noexcept;
 
-    /// What the permit for the newest snapshot ordered, where a dump that begins later says so.
+    /// Sets the order of the permit for the newest snapshot, from a dump that begins later.
     void set_order(const CapOrder& order) noexcept;
     [[nodiscard]] const CapOrder& order() const noexcept { return control_.order(); }
 
@@ -81,7 +81,7 @@ class CapGuard {
     std::uint64_t seen_count_ = 0;
     std::array<double, kAxesMax> error_{};
     bool is_ignored_ = false;
-    CapFact broken_;  // until a cycle was judged by it
+    CapFact broken_;  // until the verdict of a cycle used it
 };
 
 }  // namespace axg

@@ -11,12 +11,12 @@ namespace axg {
 namespace {
 
 constexpr std::uint32_t kSteps = 100;  // a share of speed or margin is found to 1 %
-// As good as at once: no distance is left in them.
+// So hard that braking and jerk add practically no distance.
 constexpr double kHardStop = 1e9, kHardJerk = 1e15;
 constexpr std::array<JointBoxBudget, 2> kLargerPlans{
     {{.rounds = 10, .queries = 4096}, {.rounds = 13, .queries = 32'768}}};
 
-/// Both ends of a range about its middle, the middle times `share`.
+/// Multiplies the middle of a range by `share`; the width stays the same.
 void scale_middle(double& low, double& high, double share) noexcept {
     const double middle = 0.5 * (low + high), half = 0.5 * (high - low);
     low = share * middle - half;
@@ -27,7 +27,7 @@ bool is_acceleration_known(const AxisRange& range) noexcept {
     return std::isfinite(range.acceleration_low) && std::isfinite(range.acceleration_high);
 }
 
-/// On the same path, more slowly: accelerations shrink with the square.
+/// Slows motion on the same path: accelerations shrink with the square of the share.
 AxisRange slower(AxisRange now, double share) noexcept {
     scale_middle(now.speed_low, now.speed_high, share);
     if (is_acceleration_known(now)) {
@@ -36,7 +36,7 @@ AxisRange slower(AxisRange now, double share) noexcept {
     return now;
 }
 
-/// As if speed and acceleration were known exactly.
+/// Replaces speed and acceleration by the middles of their ranges, as if they were exact.
 AxisRange exact_motion(AxisRange now) noexcept {
     now.speed_low = now.speed_high = 0.5 * (now.speed_low + now.speed_high);
     if (is_acceleration_known(now)) {
@@ -51,7 +51,7 @@ AxisRange exactly_at(AxisRange now, double position) noexcept {
     return now;
 }
 
-/// About the sampled position, wide enough for the range.
+/// Sets the axis' interval: centred at the sampled position, wide enough for the range.
 void put_about(const ReachRange& range, double position, std::uint32_t axis,
                JointBox& box) noexcept {
     box.centre[axis] = position;
@@ -105,7 +105,7 @@ std::optional<StagedProver> prover_in_force(const Machine& machine) {
     return StagedProver::create(machine, 1, cycle_plan(machine, stop_tasks(machine)), kNoIndex);
 }
 
-/// The largest step that is proven, as a share, if proofs only get harder with each; 1 is not.
+/// Returns the largest proven share, if each step is harder to prove. A share of 1 is not proven.
 template <class Proves>
 std::optional<double> largest_share(const Proves& is_proven) noexcept {
     if (!is_proven(0.0)) {
@@ -191,7 +191,7 @@ DistanceNeed distance_need(const Machine& machine, const UnprovenPair& pair) noe
         out.until_braking_mm = whole_mm;
         return out;
     }
-    // Each part is what it adds to the ones before it. A limited jerk may make one of them less.
+    // Each part is its addition to the parts before it. A limited jerk may make a sum smaller.
     const double placed_mm = std::min(motion_mm(machine, pair.task, placed), whole_mm);
     const double braked_mm = std::min(motion_mm(machine, pair.task, braked), placed_mm);
     out.until_braking_mm = std::min(motion_mm(machine, pair.task, free), braked_mm);

@@ -14,13 +14,13 @@
 
 namespace axg {
 
-/// One pair of a cycle, as its proof failed, for use when the certificate has gone on.
+/// Copy of one failed proof of a cycle, for use after the certificate's next cycle has begun.
 struct UnprovenPair {
     bool is_known = false;
     // The reach is that of a look-ahead path or of a jog: it has no parts, and no speed to lower.
     bool is_whole = false;
     bool is_jog = false;            // the margin is the floor of the jog
-    bool is_blind = false;          // too little is known of the motion: nothing was queried
+    bool is_blind = false;          // too few data about the motion: no query was made
     std::uint32_t tool = kNoIndex;  // Machine::tools; kNoIndex: none in this pair
     JointBoxTask task;              // without pieces
     JointBoxResult result;
@@ -34,8 +34,8 @@ struct UnprovenPair {
 [[nodiscard]] UnprovenPair unproven_pair(const Machine& machine, const StopCertificate& certificate,
                                          std::uint32_t pair) noexcept;
 
-/// Distance at the sampled position from which the pair keeps its margin everywhere in the reach,
-/// mm. Of a reach that is one whole, all of it is `until_braking_mm`.
+/// Distance at the sampled position that ensures the margin of the pair everywhere in the reach,
+/// mm. With `is_whole`, `until_braking_mm` contains all motion.
 struct DistanceNeed {
     double margin_mm = 0;
     double until_braking_mm = 0;      // motion at the speed now, until braking must have begun
@@ -65,7 +65,7 @@ struct DistanceNeed {
 struct OpenPart {
     double needed_mm = 0, available_mm = 0;
 };
-/// Nothing: the reach was not halved.
+/// Empty: the reach was not halved.
 [[nodiscard]] std::optional<OpenPart> open_part(const Machine& machine, const Engine& engine,
                                                 const UnprovenPair& pair) noexcept;
 
@@ -76,45 +76,46 @@ inline constexpr double kClearanceWithinMm = 50.0;
 struct PairDistances {
     DistanceNeed need;
     double available_mm = 0;  // certified at the sampled position; 0: none
-    double within_mm = 0;     // it was measured up to this
+    double within_mm = 0;     // upper limit of `available_mm`
     std::optional<OpenPart> open;
 };
-/// Of a certificate. Precondition: `pair` is known, and not blind.
+/// Stoppable mode. Precondition: `pair` has `is_known`, and not `is_blind`.
 /// Cost: the need, and two queries.
 [[nodiscard]] PairDistances pair_distances(const Machine& machine, const Engine& engine,
                                            const UnprovenPair& pair) noexcept;
 
-/// Contact mode: the query of the pair at the sampled pose. Nothing: there is none.
-/// @param room  for all queries of that pose
+/// Contact mode: the query of the pair at the sampled pose. Empty: there is none.
+/// @param room  memory for all queries of that pose
 [[nodiscard]] std::optional<Query> pose_query(const Machine& machine, const AxisSnapshot& snapshot,
                                               std::uint32_t pair, PairQueries& room) noexcept;
-/// At that pose: margin and arithmetic are all of its need.
+/// The distances at that pose: the need consists of margin and arithmetic only.
 [[nodiscard]] PairDistances pose_distances(const Engine& engine, const Query& query) noexcept;
 
-/// What is different in a second proof of the pair.
+/// Changes for a second proof of the pair.
 struct ProofChange {
     double speed_share = 1;
     double margin_share = 1;
     const std::array<AxisLimits, kAxesMax>* limits = nullptr;  // in place of the pair's
 };
-/// The pair proven over its reach after the change, by itself, with the plan in force.
+/// Whether the pair is proven over its reach after the change, as the only pair, with the plan in
+/// force.
 [[nodiscard]] bool is_proven_with(const Machine& machine, const Engine& engine,
                                   const UnprovenPair& pair, const ProofChange& change);
 
 /// Changes that prove the pair; each was queried again. Empty: none of them does.
 struct NeedRemedies {
-    bool is_alone = false;  // proven by itself: the lists of the cycle were shared
+    bool is_alone = false;  // proven as the only pair: in the cycle, pairs share the lists
     std::optional<double> speed_share;
     std::optional<double> margin_mm;       // less than the pair's
     std::optional<std::uint32_t> queries;  // used with a larger plan
     bool are_other_limits = false;         // with the limits that were passed
 };
 struct RemedySearch {
-    bool tries_plans = true;  // of no use where a position in the reach is too near
+    bool tries_plans = true;  // no use if a position in the reach is too near
     const std::array<AxisLimits, kAxesMax>* limits = nullptr;  // tried too; null: none
 };
-/// Memory is taken for each plan that is tried. Not for a cycle.
-/// Cost: at most the plan 18 times, and 36'864 queries where plans are tried.
+/// Allocates memory for each plan that it tries. Not for a cycle.
+/// Cost: at most the plan 18 times, and 36'864 queries if it tries plans.
 [[nodiscard]] NeedRemedies find_remedies(const Machine& machine, const Engine& engine,
                                          const UnprovenPair& pair, const RemedySearch& search);
 

@@ -28,7 +28,7 @@ bool is_moved_by(const Machine& machine, const JointBoxTask& task, std::uint32_t
                        [&](std::uint32_t body) { return machine.bodies[body].joint.axis == axis; });
 }
 
-/// Where the axes may be that are reported at `position`.
+/// Returns the box of all positions that the axes may have, by the snapshot and its errors.
 JointBox box_of_errors(const Machine& machine, const StopCertificate& certificate) noexcept {
     JointBox box{.centre = certificate.snapshot().position, .half = {}};
     for (std::uint32_t i = 0; i < machine.axes.size(); ++i) {
@@ -79,7 +79,7 @@ void EscapeFinder::query_clearances(const Engine& engine, std::span<const JointB
     engine(queries_.first(tasks.size()), query_results_.first(tasks.size()));
 }
 
-/// The clearance of each pair where the axes are, and what it has to keep.
+/// Queries the clearance of each pair at the current position, and computes its floor.
 void EscapeFinder::judge_now(const Engine& engine, const ContainmentTest& containment_test,
                              const StopCertificate& certificate, Escapes& out) noexcept {
     const std::span<const JointBoxTask> tasks = certificate.tasks();
@@ -102,7 +102,7 @@ void EscapeFinder::judge_now(const Engine& engine, const ContainmentTest& contai
     }
 }
 
-/// Every pair keeps its floor on the whole way, errors of position included.
+/// Whether every pair is proven beyond its floor on the whole way, errors of position included.
 bool EscapeFinder::is_way_proven(const Engine& engine, const StopCertificate& certificate,
                                  std::uint32_t axis, double target) noexcept {
     JointBox box = box_of_errors(*machine_, certificate);
@@ -132,7 +132,7 @@ void EscapeFinder::try_jog(const Engine& engine, const StopCertificate& certific
     if (!axis.unlimited && (target < axis.min || target > axis.max)) {
         return;
     }
-    // No pair gains more than the step can move it, so nothing beyond is of interest.
+    // No pair gains more than the step can move it: larger clearances are of no interest.
     JointBox whole{.centre = from, .half = {}};
     whole.half[jog.axis] = step;
     double most_mm = 0;
@@ -174,7 +174,7 @@ Escapes EscapeFinder::find(const Engine& engine, const ContainmentTest& containm
         return out;
     }
     for (std::uint32_t axis = 0; axis < machine_->axes.size(); ++axis) {
-        // The nearest pair gains by an axis between its two bodies alone.
+        // Only an axis between its two bodies gives the nearest pair more clearance.
         const bool may_gain =
             std::any_of(tasks.begin(), tasks.end(), [&](const JointBoxTask& task) {
                 return certificate.cycle()

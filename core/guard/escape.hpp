@@ -22,7 +22,7 @@ namespace axg {
 inline constexpr double kEscapeStepMm = 1.0;           // of a linear axis
 inline constexpr double kEscapeStepRad = kPi / 360.0;  // of a rotary one: half a degree
 inline constexpr double kEscapeGainMm = 0.01;          // less is no way out
-inline constexpr double kEscapeWithinMm = 50.0;        // nothing nearer: nothing to get away from
+inline constexpr double kEscapeWithinMm = 50.0;        // no pair nearer: no obstacle to leave
 inline constexpr std::uint32_t kEscapeRounds = 7;      // of a proof: six halvings
 inline constexpr std::uint32_t kEscapeQueries = 512;
 
@@ -48,10 +48,10 @@ class EscapeFinder {
     /// `machine` must outlive it. Empty: memory ran out.
     [[nodiscard]] static std::optional<EscapeFinder> create(const Machine& machine);
 
-    /// From the position of the certificate's last `prove`, for the pairs it queried. A way out
-    /// ends within the travel, with at least kEscapeGainMm more clearance for the nearest pair;
-    /// along it every pair keeps jog_floor_mm, wherever the axes are within the errors of their
-    /// positions. Cost: two batches of a query a pair, and the prover's batches (kEscapeRounds,
+    /// Starts from the position of the certificate's last `prove`, for the pairs it queried. A way
+    /// out ends within the travel, with at least kEscapeGainMm more clearance for the nearest pair;
+    /// along it every pair is proven farther apart than jog_floor_mm, for all axis positions within
+    /// their errors. Cost: two batches of a query a pair, and the prover's batches (kEscapeRounds,
     /// kEscapeQueries), for each axis and direction.
     [[nodiscard]] Escapes find(const Engine& engine, const ContainmentTest& containment_test,
                                const StopCertificate& certificate) noexcept;

@@ -10,13 +10,14 @@ namespace axg {
 
 namespace {
 
-/// Of this period, proven, the first such, and its permit would not end within a period.
+/// Whether a snapshot is the first proven one of this period, and its permit does not end within a
+/// period.
 bool is_usable(const Guard& guard, const GuardEvent& event, const GuardLimits& limits) noexcept {
     return event.is_proven && event.period == guard.period && event.age_us >= 0 &&
            event.age_us + limits.period_us <= event.samples * limits.period_us && !guard.is_proven;
 }
 
-/// What the end of a period says about it.
+/// Classifies a period at its end.
 GuardInput judge_period(const Guard& guard, const GuardLimits& limits) noexcept {
     const bool is_bad = !guard.is_proven || guard.quiet == 0;
     if (is_bad && guard.bad + limits.bad_weight >= limits.bad_limit) {
@@ -33,7 +34,7 @@ GuardInput judge_period(const Guard& guard, const GuardLimits& limits) noexcept 
     return is_settled ? GuardInput::period_settled : GuardInput::period_good;
 }
 
-/// The row's input. Whatever is no event of the list stops.
+/// Returns the row's input. An event that is not in the list stops.
 GuardInput classify(const Guard& guard, const GuardEvent& event,
                     const GuardLimits& limits) noexcept {
     switch (event.kind) {
@@ -89,7 +90,7 @@ void mark_period(Guard& guard, GuardInput input, const GuardEvent& event) noexce
     }
 }
 
-/// Evidence only: phase, cause and period stay.
+/// Discards the evidence only: phase, cause and period stay.
 void forget(Guard& guard) noexcept {
     guard.is_tested = guard.is_heard = guard.is_proven = guard.is_confirmed = false;
     guard.quiet = 0;
@@ -100,7 +101,7 @@ void wait(Guard& guard) noexcept {
     guard.good = 0;
 }
 
-/// What a stop is remembered by; none for a stop that has its cause already.
+/// Returns the cause of a new stop: by the input, else the event's fault, else refused.
 GuardFault cause_of(GuardInput input, const GuardEvent& event) noexcept {
     switch (input) {
         case GuardInput::period_silent:

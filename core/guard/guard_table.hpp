@@ -11,7 +11,7 @@
 
 namespace axg {
 
-/// An event with what the counters make of it.
+/// An event, classified with the counters.
 enum class GuardInput : std::uint8_t {
     loaded = 0,
     tested,
@@ -43,7 +43,7 @@ enum class GuardAction : std::uint8_t {
     begin,      // forget all evidence
     pass,       // the self-test has passed
     hear,       // an own frame was seen
-    wait,       // count good periods from nothing
+    wait,       // count good periods from 0
     wait_deaf,  // the same, and an own frame must be seen again
     good,       // count a good period; the count of bad ones leaks
     disturbed,  // count a bad period that had its permit
@@ -52,8 +52,8 @@ enum class GuardAction : std::uint8_t {
     stop,       // forget all evidence, send the stop
     repeat,     // send the stop again unless it is confirmed
     confirm,    // the stop is confirmed
-    withdraw,   // it is not any more
-    mute,       // the process ends: nothing is sent
+    withdraw,   // it is no longer confirmed
+    mute,       // the process ends: no frames
 };
 inline constexpr std::uint32_t kGuardActions = 15;
 
@@ -64,7 +64,7 @@ struct GuardRow {
     GuardAction action;
 };
 
-/// Every row in which something happens. In all others the phase stays and nothing is done.
+/// Every row with an action or another phase. In all others the phase stays, without an action.
 inline constexpr auto kGuardRows = [] {
     using enum GuardAction;
     using enum GuardPhase;

@@ -15,7 +15,8 @@ namespace {
 constexpr double kNotProven = -1;
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
-/// Where a better level begins that was left: beyond it by the band, roundings included.
+/// Distance at which a pair returns to a better level: beyond its threshold by the band, roundings
+/// included.
 double way_back(const MarginRule& rule, double distance_mm) noexcept {
     return (distance_mm + rule.band_mm) * (1 + 0x1p-40);
 }
@@ -24,7 +25,7 @@ bool has_clearance_level(const Pair& pair) noexcept {
     return pair.warn_mm > 0;
 }
 
-/// What is said of a pair as long as nothing more is known than that it keeps its margin.
+/// Level of a pair that is proven for its margin and for no larger distance.
 ClearanceLevel worst_clearance_level(const Pair& pair) noexcept {
     return pair.slow_mm > 0 ? ClearanceLevel::slow : ClearanceLevel::warn;
 }
@@ -90,18 +91,18 @@ std::optional<MarginAdvisory> MarginAdvisory::create(const Machine& machine) {
         advisory.states_[i].level = worst_clearance_level(machine.pairs[i]);
         advisory.least_mm_[i] = machine.pairs[i].margin_mm;
     }
-    advisory.finish();  // until a cycle was queried, the worst level that each pair has
+    advisory.finish();  // until the first update, the worst level that each pair has
     return advisory;
 }
 
 void MarginAdvisory::begin() noexcept {
     work_ = {};
     step_count_ = 0;
-    std::fill(least_mm_.begin(), least_mm_.end(), kFar);  // a pair that nobody queries
+    std::fill(least_mm_.begin(), least_mm_.end(), kFar);  // a pair without queries
 }
 
-/// What the certificate says of a pair with one tool; where that is proven, the thresholds at which
-/// the level of the pair would change from where it is now.
+/// Adds the certificate's result for a pair with one tool. If proven, adds queries of the
+/// thresholds at which the level of the pair would change from its present level.
 void MarginAdvisory::add(std::uint32_t pair, std::uint32_t task, bool is_proven) noexcept {
     const Pair& of = machine_->pairs[pair];
     if (!is_proven || !has_clearance_level(of)) {
@@ -119,7 +120,7 @@ void MarginAdvisory::add(std::uint32_t pair, std::uint32_t task, bool is_proven)
     }
 }
 
-/// A task is as far as its best threshold, a pair as near as the nearest of its tools.
+/// A task has the distance of its largest proven threshold, a pair the least of its tools.
 void MarginAdvisory::finish() noexcept {
     for (std::uint32_t i = 0; i < step_count_;) {
         const Step& first = steps_[i];
@@ -159,7 +160,7 @@ void MarginAdvisory::update(const Engine& engine, const StopCertificate& certifi
         std::fill(least_mm_.begin(), least_mm_.end(), kNotProven);
     }
     for (std::uint32_t i = 0; i < cycle.proofs.size(); ++i) {
-        // In a jog a pair keeps less than its margin.
+        // In a jog the proven floor of a pair may be less than its margin.
         add(cycle.proofs[i].pair, i, is_kept(cycle.proofs[i]) && !cycle.is_jog);
     }
     for (std::uint32_t i = 0; i < step_count_; ++i) {

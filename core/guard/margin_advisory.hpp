@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The clearance levels of a cycle: how much farther than its margin every pair stays apart,
-// wherever the axes may move before rest. Run after the certificate, with the queries that it
-// has left of the plan's, two thresholds a pair. An advisory: it enters no proof.
+// wherever the axes may move before rest. Runs after the certificate, with the rest of the plan's
+// queries, two thresholds a pair. An advisory: no proof depends on it.
 // mm. Source: docs/reference/states.md, "Advisories".
 #pragma once
 
@@ -20,14 +20,13 @@
 
 namespace axg {
 
-/// Whether any pair has a clearance level beyond its margin: else nothing is queried, and nothing
-/// is said.
+/// Whether any pair has a clearance level beyond its margin: else there is no query and no advice.
 [[nodiscard]] bool has_clearance_levels(const Machine& machine) noexcept;
 
 /// Distances at which the level of a pair changes: its margin, and its levels beyond that.
 [[nodiscard]] MarginRule margin_rule(const Machine& machine, const Pair& pair) noexcept;
 
-/// No query of a pair, by this or by the certificate, goes beyond this.
+/// Largest distance of the queries of a pair, by this advisory or by the certificate.
 [[nodiscard]] double largest_query_mm(const Machine& machine, const Pair& pair) noexcept;
 
 class MarginAdvisory {
@@ -35,11 +34,11 @@ class MarginAdvisory {
     /// `machine` must outlive it. Empty: memory ran out.
     [[nodiscard]] static std::optional<MarginAdvisory> create(const Machine& machine);
 
-    /// The clearance levels of what the certificate's last `prove` queried: the same boxes, farther
-    /// apart.
-    /// @param queries  what the cycle has left
-    /// Cost: at most that, in at most kAdvisoryRounds batches. A threshold
-    /// that is not proven with that counts as not kept.
+    /// Computes the clearance levels of the boxes that the certificate's last `prove` queried: the
+    /// same boxes, larger distances.
+    /// @param queries  the rest of the cycle's queries
+    /// Cost: at most these, in at most kAdvisoryRounds batches. A threshold
+    /// that they do not prove counts as not reached.
     void update(const Engine& engine, const StopCertificate& certificate,
                 std::uint32_t queries) noexcept;
 
@@ -50,8 +49,8 @@ class MarginAdvisory {
                 std::span<const QueryResult> query_results,
                 std::span<const ContainmentResult> containment_results) noexcept;
 
-    /// One pair: its reported level, and the proven distance. Before anything is
-    /// known it is the worst level that the pair has.
+    /// One pair: its reported level, and the proven distance. Before the first
+    /// `update` it is the worst level that the pair has.
     struct PairClearanceLevel {
         ClearanceLevel level = ClearanceLevel::stop;
         double distance_mm = 0;  // certified; the largest threshold that was proven
@@ -60,12 +59,12 @@ class MarginAdvisory {
     [[nodiscard]] std::span<const PairClearanceLevel> clearance_levels() const noexcept {
         return clearance_levels_;
     }
-    /// Of all pairs the one with the worst level, and of those the nearest; kNoIndex: all clear.
+    /// The pair with the worst level, the nearest if several have it; kNoIndex: all clear.
     [[nodiscard]] std::uint32_t worst() const noexcept { return worst_; }
 
     static constexpr std::uint32_t kAdvisoryRounds = 7;  // six halvings
 
-    // Of the last `update`, known-answer tests not counted.
+    // Work of the last `update`, without known-answer tests.
     [[nodiscard]] std::uint32_t queries() const noexcept { return work_.queries; }
     [[nodiscard]] std::uint32_t rounds() const noexcept { return work_.rounds; }
 

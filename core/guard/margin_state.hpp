@@ -9,7 +9,7 @@
 
 namespace axg {
 
-/// In order of comfort; zeroed memory is stop.
+/// From worst to best; zeroed memory is stop.
 enum class ClearanceLevel : std::uint8_t { stop = 0, slow, warn, clear };
 
 [[nodiscard]] constexpr const char* to_text(ClearanceLevel level) noexcept {
@@ -17,11 +17,11 @@ enum class ClearanceLevel : std::uint8_t { stop = 0, slow, warn, clear };
     return kWords[static_cast<unsigned>(level) & 3U];
 }
 
-/// stop_mm <= slow_mm <= warn_mm; a clearance of exactly a margin keeps it.
+/// stop_mm <= slow_mm <= warn_mm; a clearance equal to one of them satisfies it.
 struct MarginRule {
     double stop_mm = 0, slow_mm = 0, warn_mm = 0;
     double band_mm = 0;             // twice the noise of the clearance, or more
-    std::uint32_t hold_cycles = 1;  // in a row; 0 is taken as 1
+    std::uint32_t hold_cycles = 1;  // in a row; 0 counts as 1
 };
 
 struct MarginState {

@@ -57,7 +57,7 @@ StopReason judge_pair(const QueryResult& surfaces,
     return judge_containment(containment_result);
 }
 
-/// Why a pair is not proven to keep its margin to standstill; none: it is.
+/// Why the margin of a pair is not proven to standstill; none: it is.
 StopReason judge_proof(const PairProof& proof) noexcept {
     switch (proof.surfaces.proof) {
         case JointBoxProof::proven:
@@ -73,7 +73,7 @@ StopReason judge_proof(const PairProof& proof) noexcept {
     return StopReason::engine;
 }
 
-/// Fills in what this cycle proved; reason none: everything.
+/// Writes the results of this cycle's proofs; reason none: every pair is proven.
 void prove(const PairQueries& pair_queries, std::span<const QueryResult> results,
            std::span<const ContainmentResult> containment_results, CycleResult& result) noexcept {
     if (pair_queries.status != SnapshotStatus::ok) {
@@ -118,11 +118,11 @@ void prove(const StopCycle& cycle, CycleResult& result) noexcept {
     }
 }
 
-/// Where no permit is sent yet, what only keeps it back.
+/// Whether the reason only withholds a permit while the guard is not armed.
 bool may_be_withheld(StopReason reason) noexcept {
     return reason == StopReason::predicted || reason == StopReason::left_path ||
            reason == StopReason::left_jog || reason == StopReason::left_travel ||
-           reason == StopReason::left_limits;  // left_cap is of an armed guard alone
+           reason == StopReason::left_limits;  // left_cap: only of an armed guard
 }
 
 }  // namespace
@@ -195,8 +195,8 @@ CycleResult judge(const StopCycle& cycle, bool ready, bool is_armed) noexcept {
     result.samples = cycle.samples;
     const bool is_proven = result.reason == StopReason::none;
     const bool may_wait = may_be_withheld(result.reason);
-    // A machine that moves without a permit is told to stop, as soon as enough is known of it. A
-    // jog is chosen by a person: one that is not proven is no motion yet.
+    // The guard stops a machine that moves without a permit, once the certificate is settled. A
+    // person chooses a jog: one that is not proven is no motion yet.
     const bool is_loose = ready && cycle.is_settled && cycle.is_moving && !cycle.is_jog;
     // A board that stops by itself needs no stop, and no permit.
     const bool is_stopping = result.reason == StopReason::own_stop;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint32_t kMaskBits = 8;
 constexpr std::array<std::uint8_t, 4> kIdleCaps{32, 8, 3, kCapCrawl};
-constexpr std::array<double, 3> kShares{1.5, 1.05, 0.5};  // of what the fastest bound axis has
+constexpr std::array<double, 3> kShares{1.5, 1.05, 0.5};  // of the speed of the fastest bound axis
 constexpr std::array<double, 10> kSharesOfAll{4, 2, 1.5, 1.25, 1.05, 0.85, 0.65, 0.45, 0.25, 0.12};
 
 struct BitUse {
@@ -19,7 +19,7 @@ struct BitUse {
     double use = 0;        // of the fastest of its axes
 };
 
-/// Equal ones stay as they were; std::stable_sort would allocate.
+/// Sorts; equal elements stay in order. std::stable_sort would allocate.
 template <class T, class Less>
 void put_in_order(std::span<T> of, Less less) noexcept {
     for (auto next = of.begin(); next != of.end(); ++next) {
@@ -88,8 +88,8 @@ class Lister {
         return {bits_.data(), count};
     }
 
-    /// Of what costs nothing the highest caps come first, so that later ones only fall; and last
-    /// what would keep the whole motion from speeding up.
+    /// Orders that slow no axis now come first: those with the highest caps before the others, so
+    /// that later caps only fall, and last those that prevent the whole motion from speeding up.
     static bool costs_less(const OrderTried& a, const OrderTried& b) noexcept {
         if (a.room < 1 || b.room < 1) {
             return a.room > b.room;

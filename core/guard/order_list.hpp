@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which orders of a cap a search tries, the one first that costs least now. Of a board that keeps
-// single axes within a cap, those that hardly move are bound first, for that costs nothing while
-// they do not start. Pure. Source: docs/reference/board.md, "Which order".
+// Lists the cap orders that a search tries, the one that costs least now first. If a cap may bind
+// single axes, the list binds those first that hardly move, because that costs no time while they
+// do not start. Pure. Source: docs/reference/board.md, "Which order".
 #pragma once
 
 #include <array>
@@ -19,8 +19,8 @@ inline constexpr double kAnyGrowth = kCapRapid;
 struct OrderTried {
     CapOrder order{};
     bool binds_fastest = false;
-    double room = 0;    // so many times as fast as now the axes that it binds may get
-    double growth = 1;  // and so many times as fast all may get by it, which are slowed down now
+    double room = 0;    // factor by which the axes that it binds may get faster
+    double growth = 1;  // the same for all axes, if an order slows them down now
 };
 
 struct OrderList {
@@ -30,8 +30,8 @@ struct OrderList {
 };
 
 /// @param uses  [axes] how fast each is now, 1/250 of its largest speed
-/// @param order  what was ordered last; it is in the list unless it binds nothing
-/// @param is_per_axis  an order may bind some axes alone, else it binds all
+/// @param order  the last order; it is in the list unless it is a hold or binds no axis
+/// @param is_per_axis  an order may bind only some axes, else it binds all
 [[nodiscard]] OrderList list_orders(std::span<const double> uses, const CapOrder& order,
                                     bool is_per_axis) noexcept;
 

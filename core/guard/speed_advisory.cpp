@@ -23,12 +23,12 @@ double cap_lead_seconds(const Machine& machine) noexcept {
 
 namespace {
 
-constexpr std::uint32_t kFeeds = 8;  // looked at in one call
+constexpr std::uint32_t kFeeds = 8;  // tried in one call
 constexpr std::uint32_t kRise = 8;   // a cap may rise to twice its value and this
 using Feeds = std::array<std::uint32_t, kFeeds>;
 using AxisRanges = std::array<AxisRange, kAxesMax>;
 
-/// What the axis does, seen in a mirror: its way forwards is the way back.
+/// Mirrors the motion of an axis: its way forwards becomes the way back.
 AxisRange mirrored(const AxisRange& now) noexcept {
     return {-now.high,
             -now.low,
@@ -42,9 +42,9 @@ struct Going {
     double way, speed, acceleration;
 };
 
-/// An axis that goes on for a time as it does now, and is then no faster than `fastest`: what
-/// speeds it up goes on doing so up to there; what slows it down eases off at its jerk, and does
-/// not turn it round. An axis that is faster goes on until its cap is obeyed.
+/// Motion of an axis that goes on for a time as now, and is then no faster than `fastest`. An
+/// acceleration lasts up to that speed; a deceleration eases off at the axis' jerk, and does not
+/// reverse the axis. A faster axis goes on until it obeys its cap.
 Going go_on(double speed, double acceleration, double jerk, double fastest, double time) noexcept {
     if (speed < 0) {
         const double end = std::clamp(speed + acceleration * time, -fastest, 0.0);
@@ -65,13 +65,13 @@ Going go_on(double speed, double acceleration, double jerk, double fastest, doub
     const double end = std::min(uncapped, most);
     const double capped_s = uncapped > most ? (uncapped - most) / acceleration : 0;
     const double way = 0.5 * (speed + end) * (time - capped_s) + most * capped_s;
-    // The cap has taken the acceleration away before the speed is at it.
+    // The acceleration falls to 0 before the speed reaches the cap.
     const double room = std::max(0.0, fastest - end);
     return {way, std::min(end, fastest), std::min(acceleration, std::sqrt(2 * jerk * room))};
 }
 
-/// How far forwards an axis gets that goes on for `lead_s` and is then stopped as the certificate
-/// allows for. A later sample will know its speed and acceleration no worse than this one does.
+/// How far forwards an axis gets that goes on for `lead_s` and then stops as the certificate
+/// allows. A later sample will bound its speed and acceleration no worse than this one does.
 double capped_distance(const AxisLimits& limits, const AxisRange& now, double fastest,
                        double lead_s, double free_s) noexcept {
     const double speed = 0.5 * (now.speed_low + now.speed_high);
@@ -121,7 +121,7 @@ double share_of(std::uint32_t feed) noexcept {
     return static_cast<double>(feed) / kSpeedCapRapid;
 }
 
-/// What is certain of a range that holds 0: nothing.
+/// Returns the value of a range that is nearest to 0; 0 if the range contains 0.
 double certain(double low, double high) noexcept {
     return low > 0 ? low : high < 0 ? high : 0;
 }
@@ -134,8 +134,8 @@ struct AxisFuture {
     double lead_s = 0, free_s = 0;
 };
 
-/// Where an axis can get from the place that it has come to when the order is in force; on the way
-/// there what is in force now is proven.
+/// Computes the reach of an axis from its place at the time when the order comes into force. The
+/// proof with the present order covers the way to that place.
 void put_place(AxisLimits limits, const AxisRange& now, const AxisFuture& future, double& low,
                double& high) noexcept {
     const double middle = 0.5 * (now.speed_low + now.speed_high);
@@ -160,8 +160,8 @@ void put_place(AxisLimits limits, const AxisRange& now, const AxisFuture& future
           forward_reach(limits, -then - slack, -then + slack, future.free_s, unknown - pull);
 }
 
-/// From an order to slow down until the board acknowledges it: a planner averages its speed for as
-/// long as the softest axis needs to turn its acceleration round. Longer leads cost more time.
+/// Time from an order to slow down until the board acknowledges it: a planner averages its speed
+/// for as long as the softest axis needs to reverse its acceleration. Longer leads cost more time.
 double order_lead_seconds(const Machine& machine) noexcept {
     return kOrderLead * cap_lead_seconds(machine);
 }
@@ -205,7 +205,7 @@ std::uint32_t fastest_after(std::uint32_t last) noexcept {
     return std::min(kSpeedCapRapid, 2 * last + kRise);
 }
 
-/// Feeds to look at after a cap of `last`, the fastest first: close to it, and far.
+/// Feeds to try after a cap of `last`, the fastest first: close to it, and far.
 /// @return  how many
 std::uint32_t feeds_about(std::uint32_t last, Feeds& out) noexcept {
     const std::uint32_t most = fastest_after(last);
@@ -266,8 +266,8 @@ void SpeedAdvisory::update(const Engine& engine, const StopCertificate& certific
     }
 }
 
-/// The fastest feed that is proven of those that are looked at, 0: none. The box of a slower one
-/// lies within that of a faster one, so what the fastest proves of a pair holds of all.
+/// Returns the fastest proven feed of those tried; 0: none. The box of a faster feed contains that
+/// of a slower one, so a proof of a pair with the fastest holds for all.
 std::uint8_t SpeedAdvisory::search(const Engine& engine, const StopCertificate& certificate,
                                    std::uint32_t last, std::uint32_t queries) noexcept {
     const std::span<const JointBoxTask> pairs = certificate.tasks();
@@ -281,7 +281,7 @@ std::uint8_t SpeedAdvisory::search(const Engine& engine, const StopCertificate& 
         return static_cast<std::uint8_t>(feeds[0]);
     }
     queries -= queries_count_;
-    // Where there is not a query for each, the fastest are left out.
+    // Without a query for each, the search skips the fastest.
     const std::uint32_t first = feed_count - std::min(feed_count, queries / open);
     std::uint32_t tasks = 0;
     for (std::uint32_t feed = first; feed < feed_count; ++feed) {
@@ -312,7 +312,7 @@ bool SpeedAdvisory::are_proven(std::uint32_t first, std::uint32_t count) const n
     });
 }
 
-/// One query a pair: what it proves holds of every box within. Returns how many stay open.
+/// Makes one query a pair: a proof holds for every box inside. Returns how many stay open.
 std::uint32_t SpeedAdvisory::prove_widest(const Engine& engine, const JointBox& widest,
                                           std::span<const JointBoxTask> pairs,
                                           std::uint32_t queries) noexcept {
@@ -344,12 +344,12 @@ void SpeedAdvisory::update_order(const Engine& engine, const StopCertificate& ce
     cap_ = wish_.is_any_proven ? wish_.best.cap : std::uint8_t{0};
 }
 
-/// The first of the list that is proven, the one that costs least, and whether the last order is.
+/// Returns the first proven order, which costs least, and whether the last order is proven.
 CapWish SpeedAdvisory::search_orders(const Engine& engine, const StopCertificate& certificate,
                                      std::uint32_t queries, const CapOrder& order) noexcept {
     const std::span<const JointBoxTask> pairs = certificate.tasks();
     AXG_ASSERT(pairs.size() <= open_.size());
-    // What was announced can not be slowed down any more.
+    // An order cannot slow down announced motion.
     const AxisRanges ranges = ranges_of(*machine_, certificate, &StopCertificate::announced);
     const OrderList list = orders_about(*machine_, ranges, order);
     const OrderTried rapid{.growth = list.is_slowed ? kAnyGrowth : 1};
@@ -359,7 +359,7 @@ CapWish SpeedAdvisory::search_orders(const Engine& engine, const StopCertificate
         return {};
     }
     queries -= queries_count_;
-    // Where there is not a query for each, those that cost least are left out.
+    // Without a query for each, the search skips those that cost least.
     const std::uint32_t first = list.count - std::min(list.count, queries / open);
     std::uint32_t tasks = 0;
     for (std::uint32_t at = first; at < list.count; ++at) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The speed cap of a cycle: the fastest feed at which a certificate would still hold a little
-// later, if the axes go on as they do now. Run after the certificate, with what that has left of
-// the cycle's queries. An advisory: it enters no proof, and supposes what no proof may suppose,
-// that the path does not turn before the cap is obeyed. mm and s, or rad and s. Source:
+// later, if the axes go on as they do now. Runs after the certificate, with the rest of the cycle's
+// queries. An advisory: no proof depends on it, and it assumes what no proof may assume: that the
+// path does not turn before the axes obey the cap. mm and s, or rad and s. Source:
 // docs/theory/certificate.md, "The speed cap".
 #pragma once
 
@@ -21,13 +21,13 @@
 
 namespace axg {
 
-/// From the sample that a cap is computed of until the axes obey it, s: what the machine file says,
-/// and half of the time in which the softest axis turns its acceleration round.
+/// Time from the sample that a cap is computed from until the axes obey it, s: cap_lead_s of the
+/// machine, plus half of the time in which the softest axis reverses its acceleration.
 [[nodiscard]] double cap_lead_seconds(const Machine& machine) noexcept;
 
-/// Where the axes can get, were each to go on with the speed and acceleration of the newest
-/// snapshot for as long as a cap takes to be obeyed, no faster than `share` of its largest speed,
-/// and then as the certificate allows for. A larger share never makes it smaller. Precondition: the
+/// Returns the reach of the axes if each goes on with the speed and acceleration of the newest
+/// snapshot for cap_lead_seconds, is then no faster than `share` of its largest speed, and then
+/// moves as the certificate allows. A larger share never makes it smaller. Precondition: the
 /// certificate noted a snapshot.
 [[nodiscard]] JointBox capped_reach(const Machine& machine, const StopCertificate& certificate,
                                     double share) noexcept;
@@ -37,24 +37,24 @@ class SpeedAdvisory {
     /// `machine` must outlive it. Empty: memory ran out.
     [[nodiscard]] static std::optional<SpeedAdvisory> create(const Machine& machine);
 
-    /// The cap at the certificate's last `prove`, of the pairs that were queried. The search goes
-    /// on from call to call: the cap rises to little more than twice its value in one, and falls at
-    /// once to a feed that is proven, within a thirty-second part of the fastest after a few.
-    /// Cost: one query a pair in one batch, and where some are not proven up to kAdvisoryRounds
-    /// batches more; never more than `queries`, what the cycle has left. Where that is fewer than
-    /// one a pair nothing is queried, and the cap is 0.
+    /// Computes the cap at the certificate's last `prove`, for the pairs it queried. The search
+    /// continues from call to call: in one call the cap rises to at most little more than twice its
+    /// value, or falls to a proven feed; after a few it is within 1/32 of the fastest proven feed.
+    /// Cost: one query a pair in one batch, and up to kAdvisoryRounds batches more if some are not
+    /// proven; never more than `queries`, the rest of the cycle's. With fewer than one a pair it
+    /// makes no query, and the cap is 0.
     void update(const Engine& engine, const StopCertificate& certificate,
                 std::uint32_t queries) noexcept;
 
-    /// The same of a board that promised to keep its axes within a cap, where `order` was ordered
-    /// last. Precondition: the machine file has guard.cap.
+    /// The same for a board that promised to obey caps. `order` is the last order. Precondition:
+    /// the machine file has guard.cap.
     void update_order(const Engine& engine, const StopCertificate& certificate,
                       std::uint32_t queries, const CapOrder& order) noexcept;
     [[nodiscard]] const CapWish& wish() const noexcept { return wish_; }
 
-    /// 1/250 of rapid; 0: no feed is proven, or nothing is known.
+    /// 1/250 of rapid; 0: no feed is proven, or not is_known().
     [[nodiscard]] std::uint8_t cap() const noexcept { return cap_; }
-    /// Something is: the certificate was settled, and no jog is on.
+    /// Whether a cap can be computed: the certificate was settled, and no jog is on.
     [[nodiscard]] bool is_known() const noexcept { return is_known_; }
     [[nodiscard]] std::uint32_t queries() const noexcept { return queries_count_; }
 
@@ -64,7 +64,7 @@ class SpeedAdvisory {
 
     static constexpr std::uint32_t kAdvisoryRounds =
         4;                                            // three halvings: eight boxes a pair and feed
-    static constexpr std::uint32_t kOrderRounds = 6;  // the same of orders
+    static constexpr std::uint32_t kOrderRounds = 6;  // the same for orders
 
   private:
     SpeedAdvisory(const Machine& machine, JointBoxProver prover, Arena arena) noexcept
@@ -85,7 +85,7 @@ class SpeedAdvisory {
     const Machine* machine_;
     JointBoxProver prover_;
     Arena arena_;
-    std::span<JointBoxTask> tasks_;  // [feeds that are looked at][pairs with each tool]
+    std::span<JointBoxTask> tasks_;  // [feeds or orders tried][pairs with each tool]
     std::span<JointBoxResult> results_;
     std::span<std::uint32_t> open_;  // pairs that the fastest feed leaves unproven
     std::uint32_t queries_count_ = 0;

@@ -31,8 +31,8 @@ bool can_stand(const StandstillRules& rules) noexcept {
 }
 
 bool is_quiet(const StandstillRules& rules, const AxisSnapshot& snapshot) noexcept {
-    // Standstill also where no signal reports a mode. A jog that was chosen and has not begun
-    // stands as well, and a person may arm it: in this mode nothing but the positions says so.
+    // Standstill also if no signal reports a mode. An axis is also at rest in a jog that was chosen
+    // and has not begun, and a person may arm it: in this mode only the positions show the rest.
     bool quiet = snapshot.mode == kModeStandstill || snapshot.mode == kModeJog;
     for (std::uint32_t i = 0; i < rules.axis_count; ++i) {
         quiet = quiet && is_finite(snapshot.position[i]);
@@ -56,7 +56,7 @@ bool reports_motion(const Machine& machine) noexcept {
     return with_speed == (1U << machine.axes.size()) - 1U;
 }
 
-/// An endless axis at the seam of its turn stands as well as elsewhere.
+/// Returns the position without the jump of an endless axis at the seam of its turn.
 double unwrapped(Standstill& s, const StandstillRules& rules, const AxisSnapshot& snapshot,
                  std::uint32_t axis) noexcept {
     const double position = snapshot.position[axis];
@@ -97,7 +97,7 @@ StandstillRules standstill_rules(const Machine& machine, std::span<const double>
         // A whole turn between two samples would look like none.
         is_seen = is_seen && !(axis.unlimited && axis.speed_max * gap_s + width >= 2 * kPi);
     }
-    // The board's period may be the share shorter than it is said to be.
+    // The board's period may be kPeriodShare shorter than the stated one.
     out.window_samples =
         is_seen ? static_cast<std::uint64_t>(std::ceil(window_s / (period_s * (1 - kPeriodShare))))
                 : kNeverStands;

@@ -21,22 +21,22 @@ struct StandstillRules {
     std::uint32_t axis_count = 0;
     std::uint64_t window_samples = kNeverStands;  // from the oldest sample to the newest
     std::uint64_t gap_samples_max = 0;            // between two samples that follow each other
-    std::int64_t age_us_max = 0;                  // of the newest sample, when the guard asks
+    std::int64_t age_us_max = 0;                  // of the newest sample, at a check
     std::int64_t latched_age_us = 0;              // of positions at their latch, at most
-    bool is_reported = false;                     // the frames say when axes move, not only where
+    bool is_reported = false;                     // the frames report motion, not only positions
     std::array<bool, kAxesMax> unlimited{};       // compared the short way round
     std::array<double, kAxesMax> width{};         // measured positions differ by at most this
     std::array<double, kAxesMax> true_width{};    // and then the axis itself by at most this
 };
 
-/// The window lasts 100 ms, 16 strides, and so long that an axis at 0.1 mm/s (0.1 degrees/s) covers
-/// twice the width; at least 1 s for signals that do not report motion. Drives that do not all
-/// report their speed are never at rest.
+/// The window lasts at least 100 ms, 16 strides, and the time in which an axis at 0.1 mm/s (0.1
+/// degrees/s) covers twice the width; at least 1 s for signals that do not report motion. Drives
+/// that do not all report their speed are never at rest.
 /// @param count  [axes] mm or rad of one count on the wire
 [[nodiscard]] StandstillRules standstill_rules(const Machine& machine,
                                                std::span<const double> count) noexcept;
 
-/// The window is kept as extremes of 16 parts, and of one that has begun.
+/// The window is stored as extremes of 16 parts, and of one that has begun.
 inline constexpr std::uint64_t kStandstillParts = 16;
 
 struct Standstill {
@@ -53,23 +53,23 @@ struct Standstill {
     std::array<Part, kStandstillParts + 1> parts{};
 };
 
-/// Forgets all samples: at each stop, and whenever the receiver begins anew.
+/// Discards all samples. Call it at each stop, and whenever the receiver begins anew.
 /// @param after_us  latch instant that a sample has to be newer than, such as that of the stop
 void begin_standstill(Standstill& state, std::int64_t after_us) noexcept;
 
-/// One coherent snapshot.
-/// @param is_reported_still  nothing but the mode that the board reports says motion: all points
-///        of the look-ahead path are equal. (Reported speeds are part of the mode.)
+/// Records one coherent snapshot.
+/// @param is_reported_still  the board reports no motion, apart from the mode: all points of the
+///        look-ahead path are equal. (Reported speeds are part of the mode.)
 void note_standstill(Standstill& state, const StandstillRules& rules, const AxisSnapshot& snapshot,
                      bool is_reported_still) noexcept;
 
-/// An axis that covered more than its width in the window, or in what is known of it; kNoIndex:
-/// none, or nothing is known.
+/// Returns an axis that covered more than its width in the window, or in its recorded part;
+/// kNoIndex: none, or no samples.
 [[nodiscard]] std::uint32_t moving_axis(const Standstill& state,
                                         const StandstillRules& rules) noexcept;
 
-/// True: over the whole window every axis kept its width, and the newest sample is fresh. This says
-/// nothing of frozen encoders.
+/// True: every axis stayed within its width over the whole window, and the newest sample is fresh.
+/// It does not detect frozen encoders.
 [[nodiscard]] bool stands(const Standstill& state, const StandstillRules& rules,
                           std::int64_t now_us) noexcept;
 

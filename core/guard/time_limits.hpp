@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every time that the guard of a machine is held to, in one place: the deadline, its shares, and
-// what follows from how long a permit lasts.
+// Every time limit of the guard of a machine, in one place: the deadline, its shares, and the
+// limits that follow from the permit validity.
 #pragma once
 
 #include <algorithm>
@@ -10,22 +10,22 @@
 
 namespace axg {
 
-/// How much of a cycle's deadline the longest batch may take; the rest is for the snapshot, the
+/// Share of a cycle's deadline for the longest batch; the rest is for the snapshot, the
 /// queries and the frames (tens of microseconds: docs/measurements/replay-speed.md).
 inline constexpr double kEngineShare = 0.9;
 
-// The kernel facts of bus-off: a write still succeeds for up to a second. Two periods without an
-// echo are enough to know, and never less than the kernel's own delays at 1 kHz.
+// After bus-off, the kernel still accepts writes for up to a second. Two periods without an echo
+// are enough to detect it, and never less than the kernel's own delays at 1 kHz.
 inline constexpr std::int64_t kEchoUsMin = 2000;
 
 struct TimeLimits {
     std::int64_t period_us = 0;    // between samples
     std::int64_t deadline_us = 0;  // from the last frame of a sample to its result
     double engine_us = 0;          // the engine's share of it
-    // The longest permit: so long guard or engine may say nothing at all.
+    // The longest permit, and so the longest permitted silence of guard or engine.
     std::int64_t permit_us = 0;
-    std::int64_t least_permit_us = 0;  // that every permit is valid for
-    std::int64_t echo_us = 0;          // an own frame must be taken, and then seen, within it
+    std::int64_t least_permit_us = 0;  // every permit is valid for at least this
+    std::int64_t echo_us = 0;          // limit to send an own frame, and then to receive its echo
 };
 
 [[nodiscard]] inline TimeLimits time_limits(const CanLayout& can,

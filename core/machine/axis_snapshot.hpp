@@ -16,7 +16,7 @@ namespace axg {
 inline constexpr std::uint8_t kModeStandstill = 0;  // all axes held in place
 inline constexpr std::uint8_t kModeMoving = 1;      // positions bit-equal for long are then a fault
 inline constexpr std::uint8_t kModeToolChange = 2;  // `tool` may change
-inline constexpr std::uint8_t kModeJog = 3;         // one axis may move, one way, as the flags say
+inline constexpr std::uint8_t kModeJog = 3;         // one axis may move, one way: see the flags
 inline constexpr std::uint8_t kFlagNotHomed = 0x01;     // positions have no reference: never used
 inline constexpr std::uint8_t kFlagJogNegative = 0x02;  // mode jog: towards smaller positions
 inline constexpr unsigned kJogAxisShift = 4;            // mode jog: its axis in bits 4 to 7
@@ -29,14 +29,14 @@ struct AxisSnapshot {
     std::uint64_t sample = 0;     // index of the sample since the first one seen, gaps counted
     std::uint32_t axis_count = 0;
     std::uint16_t tool = 0;  // tool number the board reports
-    std::uint8_t mode = 0;   // kModeMoving and its kin, docs/reference/protocol.md
+    std::uint8_t mode = 0;   // one of kMode..., docs/reference/protocol.md
     std::uint8_t flags = 0;
     std::array<double, kAxesMax> position{};  // mm or rad, in Machine::axes order
 };
 static_assert(std::is_trivially_copyable_v<AxisSnapshot>);
 
-/// Low four bits of the live counter of the permit whose cap the board keeps; none: it names no
-/// permit. No proof uses it yet. Source: docs/reference/board.md, "Samples and the flags byte".
+/// Low four bits of the live counter of the permit whose cap the board obeys; empty: none is named.
+/// No proof uses it yet. Source: docs/reference/board.md, "Samples and the flags byte".
 [[nodiscard]] constexpr std::optional<std::uint8_t> acked_permit(
     const AxisSnapshot& snapshot) noexcept {
     if (snapshot.mode == kModeJog || (snapshot.flags & kFlagAck) == 0) {

@@ -16,7 +16,7 @@ inline constexpr std::uint32_t kStandardIdMax = 0x7FF, kExtendedIdMax = 0x1FFFFF
 [[nodiscard]] constexpr bool is_extended_id(std::uint32_t wire_id) noexcept {
     return (wire_id & kExtendedIdBit) != 0;
 }
-/// Without the mark.
+/// The identifier without bit 31.
 [[nodiscard]] constexpr std::uint32_t id_number(std::uint32_t wire_id) noexcept {
     return wire_id & ~kExtendedIdBit;
 }

@@ -21,11 +21,11 @@ enum class SignalRole : std::uint8_t {
     position,     // of an axis
     velocity,     // of an axis: whether it moves
     tool,         // the tool number
-    moving,       // yes: the board says that axes move
+    moving,       // yes: the board reports that axes move
     tool_change,  // yes: the tool may change
     homed,        // anything but yes: an axis has no reference
     counter,      // counts the frames of its message; mark is its modulus
-    drive_status  // of an axis: status word 0x6041; mark is the bit mask that says homed, 0: always
+    drive_status  // of an axis: status word 0x6041; mark is the bit mask for homed, 0: always
 };
 
 /// A frame carries a signal only while these bits hold this value (a DBC file's multiplexor).
@@ -57,22 +57,23 @@ struct CanSignal {
     SignalSelector selector;
 };
 
-/// A permit for sample k is valid to k + n, and n is one of these: as long as was proven of it.
+/// A permit for sample k is valid to k + n. n is one of these: the longest that is proven.
 struct PermitSamples {
     std::uint8_t least = 3, most = 3;
 
     friend bool operator==(const PermitSamples&, const PermitSamples&) = default;
 };
-/// Whether a cycle asks of each pair twice: with the least, and with a longer one.
+/// Whether a cycle queries each pair twice: with the least n, and with a longer one.
 [[nodiscard]] constexpr bool tries_longer(PermitSamples samples) noexcept {
     return samples.most > samples.least;
 }
-inline constexpr PermitSamples kPermitSamplesUsual{3, 12};  // where the permit says its n
-// Where it costs little that a lost frame never costs the only permit: with guard.cap the machine
-// slows down where no longer permit is proven, and a look-ahead path says where the axes go.
+inline constexpr PermitSamples kPermitSamplesUsual{3, 12};  // if the permit states its n
+// With these a lost frame never costs the only permit. They are used if that costs little: with
+// guard.cap the machine slows down where no longer permit is proven, and a look-ahead path states
+// where the axes go.
 inline constexpr PermitSamples kPermitSamplesLonger{8, 12};
 
-/// How old the positions of a sample may be at its latch. Each of them has an age of its own.
+/// Age of the positions of a sample at its latch. Each position has an age of its own.
 struct ValueAge {
     std::uint32_t least_us = 0, most_us = 0;
 
@@ -86,7 +87,7 @@ struct CanLayout {
     std::uint32_t sync_id = 0x080;
     std::vector<std::uint32_t> axis_ids{0x181, 0x281, 0x381};  // classical: in slot order; fd: one
     std::vector<std::uint16_t> data_ids{0x0181, 0x0281, 0x0381};  // E2E Data ID of each axis frame
-    // Format fd: the board sends its look-ahead path so many periods before; 0: it does not.
+    // Format fd: periods by which the board's look-ahead path is ahead; 0: the board sends none.
     std::uint32_t look_ahead_samples = 0;
     std::uint32_t look_ahead_id = 0x481;
     std::uint16_t look_ahead_data_id = 0x0481;
@@ -97,30 +98,30 @@ struct CanLayout {
     std::uint32_t sync_window_us = 0;  // cia402: process data later than this are not of this SYNC;
                                        // 0: sample_us
     ValueAge latched_age;
-    // signals: an arrival may be so much later than another one; 0: by sample_us
+    // signals: how much later one arrival may be than another; 0: see arrival_jitter_us_of
     std::uint32_t arrival_jitter_us = 0;
     std::uint32_t heartbeat_in_id = 0x701;
     std::uint32_t permit_id = 0x103;  // its bit-inverted twin is permit_id + 1
     std::uint32_t stop_id = 0x001;    // GFC
     std::uint32_t emergency_id = 0x082;
     std::uint32_t heartbeat_out_id = 0x702;
-    // Of the permit that the guard sends: 1 or 2 (docs/reference/board.md). The four ids are those
-    // of 2.
+    // Version of the permit that the guard sends: 1 or 2 (docs/reference/board.md). The next four
+    // ids are for version 2.
     std::uint8_t permit_version = 1;
     std::uint32_t session_in_id = 0x583;
     std::uint32_t hints_id =
         0x682;  // of CANopen's free ids; on the bus only heartbeats yield to it
     std::uint32_t operator_in_id = 0x584, operator_out_id = 0x604;
-    // Where the hashes of the configuration come and go; 0, both: they are not exchanged.
+    // Received and sent configuration hashes; both 0: board and guard do not exchange them.
     std::uint32_t hashes_in_id = 0, hashes_out_id = 0;
-    std::vector<std::uint32_t> quick_stop_ids;  // of drives that are told to stop by themselves
+    std::vector<std::uint32_t> quick_stop_ids;  // of the quick stop commands to drives
     PermitSamples permit_samples;
     // Receiver rules, docs/reference/protocol.md (5d).
     std::uint8_t counter_delta_max = 6;   // 2..this = OK, some lost
     std::uint8_t sync_counter_init = 2;   // good frames before a wrong sequence is believed again
     std::uint32_t stale_after_us = 3000;  // age of the complete snapshot
-    std::uint32_t frozen_samples = 100;   // mode says moving, positions bit-equal
-    std::uint32_t heartbeat_timeout_us = 65'000;  // of the board; formats of our own alone
+    std::uint32_t frozen_samples = 100;   // mode is moving, positions bit-equal
+    std::uint32_t heartbeat_timeout_us = 65'000;  // of the board; formats of our own only
 };
 
 /// Frames of permit version 2, in addition to those of every version.

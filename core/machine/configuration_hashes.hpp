@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What board and guard must agree about before anything moves, as four numbers. What goes into
-// each: docs/reference/protocol.md, "Hashes".
+// Four hashes of the machine that board and guard compare before motion. Contents of each:
+// docs/reference/protocol.md, "Hashes".
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The plan of a cycle, for whoever proves, measures or reports one.
+// The plan of a cycle, for the code that proves, measures or reports cycles.
 // Source: docs/theory/certificate.md, "Stages and groups".
 #pragma once
 
@@ -20,7 +20,7 @@ namespace axg {
     return plan;
 }
 
-/// The plan that is in force: all parts of a guard take theirs from here.
+/// The plan in force: all parts of a guard use this one.
 [[nodiscard]] constexpr CyclePlan cycle_plan(const Machine& machine, std::uint32_t tasks) noexcept {
     return machine.plan ? *machine.plan : default_plan(machine, tasks);
 }

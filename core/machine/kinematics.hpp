@@ -16,7 +16,7 @@ namespace axg {
 /// Placements of all bodies' meshes in machine coordinates.
 ///
 /// @param position  [axes] mm or rad, in Machine::axes order
-/// @param placed    [bodies] out; placed[i] takes body i's mesh frame to machine coordinates
+/// @param placed    [bodies] out; placed[i] maps body i's mesh frame to machine coordinates
 /// Cost: one joint motion and two compositions a body.
 void place_bodies(const Machine& machine, std::span<const double> position,
                   std::span<Pose> placed) noexcept;
@@ -26,8 +26,8 @@ void place_bodies(const Machine& machine, std::span<const double> position,
 void move_bodies(const Machine& machine, std::span<const double> position,
                  std::span<Pose> moved) noexcept;
 
-/// What rounding may add to any coordinate of a body placed in another's frame, mm: 64 products of
-/// poses, each a few roundings of numbers up to 8 kCoordinateMmMax, come to less than half of it.
+/// Bound of the rounding of any coordinate of a body placed in another's frame, mm: 64 products of
+/// poses, each a few roundings of numbers up to 8 kCoordinateMmMax, add less than half of it.
 inline constexpr double kPlacementErrorMm = 0x1p-23;
 
 /// Body a's mesh frame expressed in body b's mesh frame.

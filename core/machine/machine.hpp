@@ -25,8 +25,8 @@ inline constexpr std::uint32_t kNoIndex = 0xffffffffU;
 
 enum class AxisKind : std::uint8_t { linear, rotary };
 
-/// The jerk of an axis of which none is promised: its acceleration may change at once. The closed
-/// forms take it as it is: a change of acceleration then takes no time.
+/// Jerk of an axis without a promised limit: its acceleration may change at once. The closed forms
+/// use this value: a change of acceleration then needs no time.
 inline constexpr double kNoJerkLimit = 1e18;
 
 /// One controlled axis. Units: mm, mm/s, mm/s2, mm/s3 for linear; rad and rad/s... for rotary axes.
@@ -39,12 +39,12 @@ struct Axis {
     double acceleration_max = 0;
     double jerk_max = 0;      // kNoJerkLimit: none is promised
     double stopping_min = 0;  // deceleration the board guarantees in a stop
-    // And the hardest of its drive; infinite: none is promised.
+    // The hardest deceleration of its drive; infinite: none is promised.
     double stopping_most = std::numeric_limits<double>::infinity();
-    // What a reported position may be off, beyond one count of the wire: from the true position at
-    // its instant, and where the board reports what it commands, from that to where the axis is.
+    // Errors of a reported position, beyond one count of the wire: from the true position at its
+    // instant; and if the board reports commanded positions, from those to the actual ones.
     double position_error = 0, following_error = 0;
-    // The machine file states them; where it does not, check lists what is taken for them.
+    // Whether the machine file states them; `axguard check` lists the defaults used otherwise.
     bool states_position_error = false, states_following_error = false;
 };
 
@@ -61,25 +61,25 @@ struct Joint {
 
 enum class LengthUnit : std::uint8_t { mm, inch, m, um };
 
-/// Where a surface comes from. `file` is relative to the mesh root; empty when `shapes` are used.
+/// Source of a surface. `file` is relative to the mesh root; empty when `shapes` are used.
 struct MeshSource {
     std::string file;
     LengthUnit unit = LengthUnit::mm;
-    std::vector<Shape> shapes;  // each a closed shell; they may overlap. Of a tool: its sections
+    std::vector<Shape> shapes;  // each a closed shell; they may overlap; a tool's sections
     bool allow_open = false;    // no containment claim is made for this body
     bool allow_self_intersection = false;
     bool allow_degenerate = false;  // zero-area facets are dropped and counted
-    // Of a tool: it turns about +Z of the tool body's frame, the spindle's axis, and all that it
-    // sweeps counts. Shapes are in that frame then, a file's triangles are brought there by `at`.
+    // The tool turns about +Z of the tool body's frame, the spindle axis: its surface is all that
+    // it sweeps. Its shapes are in that frame; `at` moves a file's triangles there.
     bool turns = false;
     Pose at;
-    double simplify_mm = 0;  // how far fewer triangles may leave the surface; 0: not at all
-    // Found when it was simplified: every point of the surface is proven to be that near to what
-    // the engines are given.
+    double simplify_mm = 0;  // permitted deviation when simplified; 0: not simplified
+    // Computed when it was simplified: every point of the surface is proven to be this near to the
+    // surface in the engines.
     double deviation_mm = 0;
     std::string sha256;        // empty: not pinned
     Vec3d expected_size_mm{};  // 0: not stated
-    // The machine file insists on a size that config/mesh/size_doubts.hpp would doubt.
+    // The machine file confirms a size that config/mesh/size_doubts.hpp would doubt.
     bool size_is_right = false;
     std::string where;  // "machine.yaml:14", for messages about the file
 };
@@ -90,7 +90,7 @@ struct Body {
     Joint joint;
     Pose at;                // mesh frame to machine coordinates at the zero pose
     bool is_tool = false;   // its surface is that of the tool in the spindle
-    bool is_stock = false;  // what is cut: cutting sections of tools may touch it
+    bool is_stock = false;  // the stock: cutting sections of tools may touch it
     bool has_mesh = false;  // a body may be a bare link
     MeshSource mesh;
 };
@@ -99,7 +99,7 @@ struct Tool {
     std::uint16_t number = 0;
     std::string name;
     double length_mm = 0;  // spindle nose to tip: G43's offset along the tool axis
-    Pose at;  // tool mesh frame to the tool body's; of one that turns nothing is left to do
+    Pose at;  // tool mesh frame to the tool body's; identity if it turns (see MeshSource::at)
     MeshSource mesh;
 };
 
@@ -116,23 +116,23 @@ struct Pair {
 struct PairSurface {
     std::uint32_t body = 0, against = 0;  // Machine::bodies
     std::uint32_t tool = kNoIndex;        // with that tool in the pair; kNoIndex: none is in it
-    std::uint32_t surface = 0;            // of those that pairs have of their own
-    // Containment is a matter of whole bodies, as everywhere; unless this surface is all there
-    // is of the body in this pair.
+    std::uint32_t surface = 0;            // index of a pair-specific surface
+    // Containment tests use the whole body, unless this surface is all of the body in this
+    // pair.
     bool is_whole = false;
 };
 
-/// What was proven of a pair, with one tool where a tool is in it, wherever the axes are within
-/// Travel (docs/theory/travel.md).
+/// A proof about a pair (with one tool, if a tool is in it) for all positions within Travel
+/// (docs/theory/travel.md).
 struct TravelProof {
-    // What was pruned from its surfaces keeps more than this. Negative: nothing was pruned.
+    // Pruned parts of its surfaces are proven farther apart than this. Negative: none was pruned.
     double distance_mm = -1;
-    bool is_apart = false;  // that is all of them, and neither body is inside the other
-    // What is left of them, of the surfaces that pairs have of their own; kNoIndex: all of it.
+    bool is_apart = false;  // all was pruned, and neither body is inside the other
+    // The remaining surfaces, as pair-specific ones; kNoIndex: the body's own, unpruned.
     std::uint32_t surface_a = kNoIndex, surface_b = kNoIndex;
 };
 
-/// Positions that proofs about the whole travel hold for, and these.
+/// The positions that travel proofs hold for, and these proofs.
 struct Travel {
     std::array<double, kAxesMax> low{}, high{};  // mm or rad; an endless one is free
     std::vector<TravelProof> proofs;  // [pairs, each with each tool (stop_tasks)]; empty: none
@@ -143,8 +143,8 @@ struct Exclusion {
     std::string reason;
 };
 
-/// What all queries that a GPU answers in one launch may use together: with it the longest launch
-/// is known. How long the default ones take: docs/measurements/gpu-fill.md.
+/// Capacities of all queries in one launch of a GPU together: they bound the longest launch. Time
+/// of the default ones: docs/measurements/gpu-fill.md.
 struct BatchCapacities {
     std::uint32_t level_pairs = 1024;      // pairs of nodes opened on one level
     std::uint32_t leaf_pairs = 1024;       // pairs of leaves
@@ -154,7 +154,7 @@ struct BatchCapacities {
 };
 
 /// Capacities of the engine's fixed lists for queries about one pose; an overflow returns
-/// not_proven. Queries about boxes have those of the cycle's plan.
+/// not_proven. Queries about boxes use the lists of the cycle's plan.
 struct Capacities {
     std::uint32_t node_pairs = 8192;       // a query, all levels together
     std::uint32_t triangle_pairs = 65536;  // a query
@@ -167,7 +167,7 @@ inline constexpr std::uint32_t kPoseRechecks = 64;
     return capacities.rechecks != 0 ? capacities.rechecks : kPoseRechecks;
 }
 
-/// How the axes come to rest in every stop, whatever its cause (docs/theory/certificate.md).
+/// How the axes brake to rest in every stop, whatever its cause (docs/theory/certificate.md).
 enum class StopPromise : std::uint8_t {
     independent = 0,  // each axis by itself
     path_keeping,     // along the look-ahead path (CanLayout::look_ahead_samples)
@@ -176,7 +176,8 @@ enum class StopPromise : std::uint8_t {
     return promise == StopPromise::path_keeping ? "path_keeping" : "independent";
 }
 
-/// Who ends the motion when permits end (docs/reference/machine-file.md, "Who obeys the permit").
+/// The device that ends the motion when permits end (docs/reference/machine-file.md, "Who obeys the
+/// permit").
 enum class ObeyedBy : std::uint8_t {
     board = 0,  // the motion board, by the age of the sample that a permit names
     line,       // a monoflop behind the output line
@@ -196,8 +197,8 @@ enum class StopReversal : std::uint8_t {
     return reversal == StopReversal::jerk_limited ? "jerk_limited" : "none";
 }
 
-/// Whether a board keeps its axes within the cap of a permit. all_axes: one that can only scale its
-/// whole motion.
+/// Whether a board limits its axes to the cap of a permit. all_axes: it can only scale its whole
+/// motion.
 enum class CapPromise : std::uint8_t { none = 0, all_axes, per_axis };
 [[nodiscard]] constexpr const char* to_text(CapPromise promise) noexcept {
     return promise == CapPromise::all_axes   ? "all_axes"
@@ -221,17 +222,17 @@ struct GuardRules {
     StopReversal stop_reversal = StopReversal::none;
     double board_reaction_s = 2e-3;  // from the end of the permit until every axis brakes
     double latch_jitter_s = 20e-6;   // the time between two samples may be off by this
-    bool free_jerk_limited = false;  // the axes keep jerk_max in free motion, not in stops alone
-    bool reports_limits = false;     // limits_broken: report, nothing is stopped for them
+    bool free_jerk_limited = false;  // jerk_max holds in free motion, not only in stops
+    bool reports_limits = false;     // limits_broken: report; the guard does not stop
     bool travel_enforced = false;    // the board never leaves the travel, not in a stop either
     // The never-colliding set is pruned (docs/theory/travel.md), this far beyond the
     // travel.
     bool travel_proofs = false;
     double overrun_mm = 2, overrun_rad = 0.5 * 0x1.1df46a2529d39p-6;  // 0.5 degrees
     bool speed_cap = false;             // the permit carries one (docs/theory/certificate.md)
-    CapPromise cap = CapPromise::none;  // the board keeps the one of the permit, and proofs use it
-    double cap_lead_s = 20e-3;          // from a sample until the board makes use of its cap
-    // A clearance level becomes better this far beyond it, for so many samples in a row.
+    CapPromise cap = CapPromise::none;  // the board obeys that of the permit, and proofs use it
+    double cap_lead_s = 20e-3;          // from a sample until the board applies its cap
+    // A clearance level improves this far beyond it, after this many samples in a row.
     double level_band_mm = 0.5;
     std::uint32_t level_hold_samples = 50;
     JogRules jog;
@@ -249,7 +250,7 @@ struct OutputLine {
     std::uint32_t line = 0;
 };
 
-/// Which engine answers: automatic is whichever is measured to be faster at start.
+/// The engine that processes queries. automatic: the faster one, as measured at start.
 enum class EngineChoice : std::uint8_t { automatic, cpu, cuda };
 
 struct Machine {
@@ -261,12 +262,12 @@ struct Machine {
     Travel travel;
     std::vector<Exclusion> exclusions;
     std::vector<Tool> tools;
-    std::uint16_t first_tool = 0;  // in the spindle when nothing says otherwise; 0: none
+    std::uint16_t first_tool = 0;  // in the spindle while the board reports none; 0: none
     CanLayout can;
     GuardRules guard;
     StatedPromises states;
     CycleRules cycle;
-    std::optional<CyclePlan> plan;  // chosen at start, or recorded: in place of what `cycle` says
+    std::optional<CyclePlan> plan;  // chosen at start, or recorded; replaces that of `cycle`
     OutputLine output_line;
     Capacities capacities;
     EngineChoice engine = EngineChoice::automatic;

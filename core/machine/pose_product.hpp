@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Poses of one body in another's frame, as products along the joints between them: what stays the
-// same at many positions is multiplied once, and only the joints that are free are multiplied anew.
+// Poses of one body in another's frame, as products along the joints between them: constant factors
+// are multiplied once for many positions, and only the free joints are multiplied anew.
 // One source for the host and for a GPU, so that both get the same bits. Double, mm, rad.
 // Source: docs/theory/certificate.md, "Levers once".
 #pragma once
@@ -52,7 +52,7 @@ struct PathJoint {
     bool is_linear = true;
 };
 
-/// Moves what `pose` places.
+/// Moves `pose` by one joint.
 /// @param sines  SinCos of an angle, rad
 template <class Sines>
 AXG_HD void move_by(const PathJoint& joint, double position, const Sines& sines,
@@ -69,8 +69,8 @@ AXG_HD void move_by(const PathJoint& joint, double position, const Sines& sines,
         rotary_motion(joint.direction, joint.pivot_mm, {joint.sign * turn.sin, turn.cos}), pose);
 }
 
-/// Joints and fixed stretches in turn, from the first body on: fixed[i] lies before joint i, and
-/// the last one behind the last joint.
+/// Joints and fixed stretches in turn, from the first body on: fixed[i] is before joint i, and the
+/// last one after the last joint.
 struct PoseProduct {
     const PathJoint* joints;
     const Pose* fixed;           // [count + 1]
@@ -98,7 +98,7 @@ AXG_HD Pose right_of(const PoseProduct& p, const At& at, const Sines& sines) noe
     return stretch_of(p, 0, p.split, at, sines);
 }
 
-/// And on to the second one.
+/// From the middle of the path to the second body.
 template <class At, class Sines>
 AXG_HD Pose left_of(const PoseProduct& p, const At& at, const Sines& sines) noexcept {
     return p.split == p.count

@@ -17,9 +17,8 @@ struct Triangle {
     friend constexpr bool operator==(const Triangle&, const Triangle&) = default;
 };
 
-/// How a body's tree groups its triangles (core/collision/tree.hpp): the part of a tree that takes
-/// long to find. Boxes are no part of it; they are made from the triangles whenever a tree is
-/// raised.
+/// How a body's tree groups its triangles (core/collision/tree.hpp): the slow part of building a
+/// tree. It contains no boxes: these are computed from the triangles whenever a tree is raised.
 struct TreeShape {
     std::vector<std::uint8_t> nodes;       // children of each node, or kLeafMark + triangles of a
                                            // leaf; depth first, parents before their children
@@ -31,7 +30,7 @@ struct SurfacePart {
     Vec3f extreme[6];
 };
 
-/// What core/mesh/surface_parts.hpp finds in a surface.
+/// Result of core/mesh/surface_parts.hpp for a surface.
 struct SurfaceParts {
     std::vector<SurfacePart> parts;  // connected by shared corners, in the order of facets
     // [facets] 1: of a shell whose every edge is run along as often in one direction as in the
@@ -42,8 +41,8 @@ struct SurfaceParts {
 struct Mesh {
     std::string name;
     std::vector<Triangle> triangles;
-    // What takes long to find out about these triangles, where a compiled machine brought it along;
-    // empty: whoever needs it finds it. It goes with the triangles: others need others.
+    // Slow results about these triangles, from a compiled machine; empty: computed when needed.
+    // They are valid for these triangles only.
     TreeShape shape{};
     SurfaceParts parts{};
 };

@@ -43,7 +43,7 @@ void count_edges(const MeshTopology& topology, std::vector<std::uint64_t>& open,
 std::uint32_t count_t_junctions(const MeshTopology& topology, std::span<const std::uint64_t> open,
                                 double tolerance_mm) {
     if (open.size() > kOpenEdgesExaminedMax) {
-        return 0;  // a surface that is open all over: T-junctions are not what is wrong
+        return 0;  // a surface that is open all over: T-junctions are not its fault
     }
     std::vector<std::uint32_t> ends;
     for (const std::uint64_t key : open) {
@@ -68,8 +68,8 @@ std::uint32_t count_t_junctions(const MeshTopology& topology, std::span<const st
     return count;
 }
 
-/// Facets without area, and which of them lie on an edge (or corner) of a facet with area.
-/// Returns [facets] 1: no area.
+/// Finds facets without area, and those of them that are on an edge (or corner) of a facet with
+/// area. Returns [facets] 1: no area.
 std::vector<std::uint8_t> find_degenerate(std::span<const Triangle> facets,
                                           const MeshTopology& topology, MeshReport& report) {
     std::vector<std::uint8_t> is_flat(facets.size(), 0);
@@ -144,7 +144,7 @@ void count_doubled(const MeshTopology& topology, const std::vector<std::uint8_t>
     }
 }
 
-/// The box; returns the largest |coordinate|.
+/// Computes the bounding box; returns the largest |coordinate|.
 double measure(std::span<const Triangle> facets, MeshReport& report) {
     report.min_mm = report.max_mm = facets[0].a;
     for (const Triangle& t : facets) {

@@ -157,8 +157,8 @@ void judge_shells(const LabelledFacets& labelled, MeshReport& report) {
         if (!winding_around(shells, labelled.facets, i, angles_left, winding)) {
             report.shells_complete = false;
         }
-        // A half stands for a point on another part's surface: solids in contact, or a cavity that
-        // reaches the wall.
+        // A winding number of a half means a point on another part's surface: solids in contact, or
+        // a cavity that reaches the wall.
         if (s.volume < 0 && winding < 0.4) {
             ++report.inverted_shells;
             report.first_inverted = std::min(report.first_inverted, s.probe);

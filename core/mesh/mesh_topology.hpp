@@ -36,7 +36,7 @@ struct MeshTopology {
     std::vector<Ids> ids;       // [facets]
     std::vector<EdgeUse> uses;
     // [facets] 1: an edge that is not run along as often in one direction as in the other. Without
-    // one a surface has no border, and so a winding number, be it two solids that share an edge.
+    // one the surface has no border, and so a winding number, even if two solids share an edge.
     std::vector<std::uint8_t> has_bad_edge;
 };
 

@@ -28,8 +28,8 @@ Interval project(const Corners& t, Vec3d axis) noexcept {
     return {std::fmin(p, std::fmin(q, r)), std::fmax(p, std::fmax(q, r))};
 }
 
-/// Do both triangles overlap by more than the tolerance along the axis? A zero axis says nothing:
-/// yes.
+/// Whether both triangles overlap by more than the tolerance along the axis. A zero axis separates
+/// nothing: true.
 bool overlaps(const Corners& a, const Corners& b, Vec3d axis, double tolerance_mm) noexcept {
     const double length = std::sqrt(dot(axis, axis));
     const Interval p = project(a, axis), q = project(b, axis);
@@ -37,7 +37,7 @@ bool overlaps(const Corners& a, const Corners& b, Vec3d axis, double tolerance_m
     return length == 0 || depth > tolerance_mm * length;
 }
 
-/// Do all corners lie within the tolerance of the plane through the origin with that normal?
+/// Whether all corners are within the tolerance of the plane through `origin` with that normal.
 bool lies_in(const Corners& t, Vec3d origin, Vec3d normal, double tolerance_mm) noexcept {
     const double limit = tolerance_mm * std::sqrt(dot(normal, normal));
     return std::all_of(t.begin(), t.end(),

@@ -16,8 +16,8 @@ namespace {
 constexpr double kGuard = 1.0e-6;
 
 std::vector<Triangle> box_triangles(const Vec3d& size) {
-    // Corner i: bit 0 says larger x, bit 1 larger y, bit 2 larger z. Two triangles a side, seen
-    // from outside to the left.
+    // Corner i: bit 0 means larger x, bit 1 larger y, bit 2 larger z. Two triangles a side,
+    // counter-clockwise seen from outside.
     constexpr std::array<std::array<std::uint8_t, 3>, 12> kSides{{{0, 2, 3},
                                                                   {0, 3, 1},
                                                                   {4, 5, 7},
@@ -42,7 +42,7 @@ std::vector<Triangle> box_triangles(const Vec3d& size) {
     return out;
 }
 
-/// Turned about +Z it stays what it is.
+/// Whether a turn about +Z leaves the shape unchanged.
 bool is_about_z(const Shape& shape) noexcept {
     const Pose& at = shape.at;
     return !shape.profile.empty() && at.r[0][2] == 0 && at.r[1][2] == 0 && at.t[0] == 0 &&

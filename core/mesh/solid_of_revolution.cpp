@@ -21,13 +21,13 @@
 namespace axg {
 namespace {
 
-// Rounding of corners to float32 (2^-24 each) and of sine and cosine, with room: walls stand off by
-// this much more.
+// Exceeds the rounding of corners to float32 (2^-24 each) and of sine and cosine: walls are offset
+// by this much more.
 constexpr double kGuard = 1.0e-6;
 
 struct Outline {
     std::array<Vec3d, 2 * kProfilePointsMax> point;  // x = radius, z = height
-    std::array<double, 2 * kProfilePointsMax> ring;  // radius of the corners that stand for it
+    std::array<double, 2 * kProfilePointsMax> ring;  // radius of its corners in the polyhedron
     std::uint32_t count = 0;
 
     void add(double radius, double height, double ring_radius) noexcept {
@@ -59,7 +59,7 @@ bool meet(Vec3d a, Vec3d b, Vec3d c, Vec3d d) noexcept {
 }
 
 /// Index of the first edge that meets another one where it should not; count when the outline is
-/// simple. Only the ends lie on the axis, so the closing edge along it meets nothing.
+/// simple. Only the ends are on the axis, so the closing edge along it meets nothing.
 std::uint32_t first_crossing(std::span<const Vec3d> p) noexcept {
     const auto edges = static_cast<std::uint32_t>(p.size() - 1);
     for (std::uint32_t i = 0; i < edges; ++i) {
@@ -79,7 +79,7 @@ std::uint32_t first_crossing(std::span<const Vec3d> p) noexcept {
     return edges + 1;
 }
 
-/// Rounds the points to float32, orders them from the bottom of the axis up the outside, leaves out
+/// Rounds the points to float32, orders them from the bottom of the axis up the outside, and drops
 /// flat middle points.
 RevolutionStatus read_profile(std::span<const Vec3d> profile, Outline& out, std::uint32_t& at) {
     const auto count = static_cast<std::uint32_t>(profile.size());
@@ -179,7 +179,7 @@ RevolutionResult solid_of_revolution(std::span<const Vec3d> profile, std::uint32
     const std::uint32_t crossing = first_crossing(std::span(outline.point.data(), outline.count));
     if (crossing <= outline.count - 1) {
         result.status = RevolutionStatus::groove_too_narrow;
-        result.point = 0;  // points were left out and doubled: no honest index
+        result.point = 0;  // points were dropped and doubled: no index applies
         return result;
     }
     result.point = 0;

@@ -35,10 +35,10 @@ struct RevolutionResult {
 /// @param profile   outline from axis to axis, either way round: x = radius mm, z = height mm; y
 /// unused
 /// @param segments  corners of the polygon that replaces the circle
-/// @return          closed, outward facing; contains the solid of revolution of the profile, its
-/// points first rounded
-///                  to float32. Outer walls stand off by at most r (1/cos(pi/segments) - 1) + 2e-6
-///                  r, inner ones (that face the axis: a bore, a hollow) likewise towards the axis.
+/// @return          closed, outward facing; contains the solid of revolution of the profile, whose
+///                  points are first rounded to float32. Outer walls are offset by at
+///                  most r (1/cos(pi/segments) - 1) + 2e-6 r, inner ones (that face the axis: a
+///                  bore, a hollow) likewise towards the axis.
 ///                  Proof in solid_of_revolution.cpp.
 [[nodiscard]] RevolutionResult solid_of_revolution(std::span<const Vec3d> profile,
                                                    std::uint32_t segments);

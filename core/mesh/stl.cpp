@@ -16,7 +16,7 @@ namespace axg {
 namespace {
 
 constexpr std::size_t kNumberCharsMax =
-    64;  // longest number read; keeps 10^-324 apart from 10^308 by its exponent
+    64;  // longest number read: one out of range is too small exactly if its exponent is negative
 
 static_assert(std::endian::native == std::endian::little,
               "STL is little endian and copied as it is");
@@ -105,7 +105,7 @@ class Words {
         }
         return text_.substr(start_, at_ - start_);
     }
-    /// Leaves out the rest of the line: names may hold anything.
+    /// Skips the rest of the line: names may contain anything.
     void skip_line() {
         while (at_ < text_.size() && !is_line_end(text_[at_])) {
             ++at_;
@@ -167,7 +167,7 @@ StlFault fault_here(StlFaultKind kind, const Words& words, const StlResult& resu
         .kind = kind, .byte = words.byte(), .line = words.line(), .facet = result.triangles.size()};
 }
 
-/// The word just read is not what the grammar wants: the end, a foreign byte or another word.
+/// Reports that the text has no expected word: the end, an unprintable byte or another word.
 void add_word_fault(StlResult& result, const Words& words, std::string_view word,
                     StlFaultKind otherwise, const char* wanted) {
     StlFault fault = fault_here(otherwise, words, result);
@@ -276,7 +276,7 @@ bool looks_like_text(std::span<const std::byte> bytes) {
     }
     for (std::size_t i = 0; i < bytes.size() && i < kStlHeaderBytes; ++i) {
         if (bytes[i] == std::byte{0}) {
-            return false;  // a binary header that says solid, padded with zeros
+            return false;  // a binary header that begins with solid, padded with zeros
         }
     }
     return true;

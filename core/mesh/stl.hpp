@@ -23,28 +23,27 @@ inline constexpr std::uint64_t kStlBytesMax = kStlHeaderBytes + kStlFacetBytes *
 inline constexpr std::size_t kStlFaultsMax = 16;  // listed one by one; the rest is counted
 
 enum class StlFaultKind : std::uint8_t {
-    too_large,        // got = bytes, wanted = kStlBytesMax
-    too_short,        // got = bytes: neither a binary header nor a text
-    wrong_size,       // got = bytes, wanted = the bytes that the count at 80 asks for (neither kind
-                      // fits)
-    no_facets,        // well formed, but nothing in it
-    too_many_facets,  // wanted = kTrianglesMax
-    not_finite,       // NaN or infinity in a vertex
-    out_of_range,     // |coordinate| above kCoordinateMmMax once in mm
-    bad_number,       // text: not a decimal number, or one of more than kNumberCharsMax characters
-    unexpected_word,  // text: the grammar wanted `wanted_word` here
-    unexpected_end,   // text: truncated; the grammar wanted `wanted_word`
+    too_large,         // got = bytes; expected at most kStlBytesMax
+    too_short,         // got = bytes: neither a binary header nor a text
+    wrong_size,        // got = bytes; expected: the bytes for the count at 80 (neither kind fits)
+    no_facets,         // well formed, but nothing in it
+    too_many_facets,   // expected at most kTrianglesMax
+    not_finite,        // NaN or infinity in a vertex
+    out_of_range,      // |coordinate| above kCoordinateMmMax once in mm
+    bad_number,        // text: not a decimal number, or one of more than kNumberCharsMax characters
+    unexpected_word,   // text: the grammar requires `wanted_word` here
+    unexpected_end,    // text: truncated; the grammar requires `wanted_word`
     unprintable_byte,  // text: got = the byte
 };
 
 struct StlFault {
     StlFaultKind kind{};
-    std::uint64_t byte = 0;   // offset in the file
-    std::uint64_t line = 0;   // from 1 in a text; 0: the file is not read as text
-    std::uint64_t facet = 0;  // index of the facet, where one is meant
-    std::uint64_t got = 0, wanted = 0;
-    double value = 0;              // the coordinate in mm, for not_finite and out_of_range
-    const char* wanted_word = "";  // static storage
+    std::uint64_t byte = 0;             // offset in the file
+    std::uint64_t line = 0;             // from 1 in a text; 0: the file is not read as text
+    std::uint64_t facet = 0;            // index of the facet, where one is meant
+    std::uint64_t got = 0, wanted = 0;  // found and expected value
+    double value = 0;                   // the coordinate in mm, for not_finite and out_of_range
+    const char* wanted_word = "";       // static storage
 };
 
 struct StlResult {
@@ -56,16 +55,16 @@ struct StlResult {
 
 /// Reads one STL file.
 ///
-/// A file is binary exactly if 84 + 50 * count equals its size (64-bit); what the header says is
-/// not looked at. A text cannot meet that below 7.5 GB: four printable bytes make a count of at
-/// least 151 million. Stated normals and attribute bytes are ignored: the order of the vertices is
+/// A file is binary exactly if 84 + 50 * count equals its size (64-bit), whatever its header
+/// contains. A text cannot meet that below 7.5 GB: four printable bytes make a count of at least
+/// 151 million. Stated normals and attribute bytes are ignored: the order of the vertices is
 /// the facet's orientation.
 ///
 /// @param bytes     the whole file
 /// @param unit_mm   length of the file's unit in mm, above 0
-/// @return          coordinates scaled in double, rounded once to float32, subnormals flushed to
-/// zero Cost: linear in the size; memory is taken only after the count has been checked against the
-/// size and kTrianglesMax.
+/// @return          coordinates scaled in double, rounded once to float32, subnormals become zero
+/// Cost: linear in the size; allocates only after checking the count against the size and
+/// kTrianglesMax.
 [[nodiscard]] StlResult read_stl(std::span<const std::byte> bytes, double unit_mm);
 
 /// Writes a binary STL: fixed header, unit normals (zero for a facet without area), attribute 0.

@@ -12,7 +12,7 @@ namespace axg {
 /// Corners are shared when their coordinates are equal, as in check_mesh. Allocates.
 [[nodiscard]] SurfaceParts take_apart(std::span<const Triangle> facets);
 
-/// Of a mesh: what it brought along, or else take_apart().
+/// The parts stored in the mesh, or else the result of take_apart().
 [[nodiscard]] SurfaceParts parts_of(const Mesh& mesh);
 
 }  // namespace axg

@@ -2,9 +2,9 @@
 // Why nothing that is swept sticks out. Along an edge the distance from the axis is a convex
 // function of the height, so between two heights the edge stays below the straight line between
 // its radii there. At one height a triangle is a line whose ends are on edges, and the distance
-// from the axis is largest at an end; a level triangle has its largest at a corner. So edges say
-// it all. Two levels, a few floats apart, enclose the height of each corner: a step of the outline
-// stays a step, as steep. What follows lifts lines, and never lowers one.
+// from the axis is largest at an end; a level triangle has its largest at a corner. So the edges
+// suffice. Two levels, a few floats apart, enclose the height of each corner: a step of the outline
+// stays a step, as steep. All later steps lift lines, and never lower one.
 #include "core/mesh/swept_profile.hpp"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kHeightsMax = 8192;                         // of the outline as it is found
 constexpr std::size_t kStretchesMax = kProfilePointsMax / 2 - 1;  // of the one that is returned
-constexpr double kTipMm = 1.0e-3;  // radius of what ends in a tip: facets of some size
+constexpr double kTipMm = 1.0e-3;  // radius of a tip: its facets have some size
 constexpr double kUp = 1.0e-6;     // relative; more than the rounding of a radius to float32
 
 struct Point {
@@ -107,7 +107,7 @@ Envelope envelope_of(std::span<const Triangle> triangles) {
 /// One line in place of several.
 struct Stretch {
     double low_height, low_radius, high_height, high_radius;
-    double off_mm;            // how far it is beyond what it stands for, at most
+    double off_mm;            // largest distance beyond the lines it replaces
     std::size_t split_after;  // where it should be cut if that is too far
 };
 
@@ -142,7 +142,7 @@ Stretch line_over(const Envelope& envelope, std::size_t first, std::size_t last)
     return out;
 }
 
-/// As few as are within `off_mm`, by halving; none when there are more than kStretchesMax.
+/// As few lines as are within `off_mm`, by halving; empty if more than kStretchesMax.
 std::vector<Stretch> lines_within(const Envelope& envelope, double off_mm) {
     std::vector<Stretch> out;
     std::vector<std::array<std::size_t, 2>> open{{0, envelope.stretches() - 1}};

@@ -21,14 +21,14 @@ LeafRecipe no_triangles() {
     return {.a = kChildren, .b = 1, .touching = 0, .none_near = true};
 }
 
-/// Two leaves of which so many pairs are near, or as many fewer as make whole rows: of whole
-/// batches whole batches.
+/// Two leaves with `pairs` near pairs, or fewer so that they fill whole rows; whole batches stay
+/// whole batches.
 LeafRecipe leaf_of(std::uint32_t pairs) {
     const std::uint32_t b = std::clamp(pairs / kChildren, 1U, kChildren);
     return {.a = std::min(pairs / b, kChildren), .b = b, .touching = 0, .none_near = false};
 }
 
-/// Whole leaves first, the last row in one of its own. Takes from `pairs`.
+/// Fills whole leaves first, and puts the last row in a leaf of its own. Reduces `pairs`.
 void heap_triangles(std::uint32_t& pairs, std::span<LeafRecipe> leaves) {
     for (LeafRecipe& leaf : leaves) {
         const std::uint32_t wanted = std::min(pairs, kPairsMax);
@@ -40,8 +40,8 @@ void heap_triangles(std::uint32_t& pairs, std::span<LeafRecipe> leaves) {
     }
 }
 
-/// Rows that are left for pairs of leaves with one pair of triangles each, where every other list
-/// is full and as many leaves as may be share a row.
+/// Rows that remain for pairs of leaves with one pair of triangles each, if every other list is
+/// full and as many leaves as possible share a row.
 std::uint32_t rows_for_singles(const WorkLists& share, std::uint32_t heaps) {
     const std::uint32_t taken = share.node_pairs + share.triangle_pairs / kChildren + 2 * heaps +
                                 share.leaf_pairs / kTimesMax + 2;
@@ -77,8 +77,8 @@ std::vector<LeafRecipe> deal_leaves(const WorkLists& share, CycleLayout layout) 
     return leaves;
 }
 
-/// Each leaf of a in a row of its own, or where that takes more than `rows`, those that are alike
-/// together. Empty: not even then.
+/// Puts each leaf of a in a row of its own or, if that needs more than `rows`, as few equal ones
+/// in one row as possible. Empty: kTimesMax a row need more than `rows` too.
 std::vector<LeafRow> deal_leaf_rows(std::vector<LeafRecipe> leaves, std::uint32_t rows) {
     std::sort(leaves.begin(), leaves.end(), std::greater<>());
     std::vector<LeafRow> out;
@@ -99,7 +99,7 @@ std::vector<LeafRow> deal_leaf_rows(std::vector<LeafRecipe> leaves, std::uint32_
     return {};
 }
 
-/// Rows in the clipping of leaves of which no triangles are near.
+/// Puts rows in the clipping of leaves without near triangles. Returns the rest.
 std::uint32_t clip_rows(std::uint32_t rows, std::vector<LeafRow>& leaves) {
     for (LeafRow& leaf : leaves) {
         const std::uint32_t each = std::min(rows / leaf.times, kChildren);
@@ -111,7 +111,7 @@ std::uint32_t clip_rows(std::uint32_t rows, std::vector<LeafRow>& leaves) {
     return rows;
 }
 
-/// Rows beyond those that pairs take: in the opening as far as there is room.
+/// Puts rows beyond those of the pairs in the opening while there is room. Returns the rest.
 std::uint32_t open_rows(std::uint32_t rows, std::vector<QueryDeal>& out) {
     const auto count = static_cast<std::uint32_t>(out.size());
     std::uint32_t left = rows;
@@ -125,8 +125,8 @@ std::uint32_t open_rows(std::uint32_t rows, std::vector<QueryDeal>& out) {
     return left;
 }
 
-/// A pair of nodes that is opened: what its children are. All but the last have one pair more that
-/// is opened.
+/// The children of an opened pair of nodes. All pairs but the last contain one more pair that is
+/// opened.
 struct OpenedPair {
     bool has_inner = false;
     std::uint32_t leaf_rows = 0, aparts = 0;
@@ -134,7 +134,7 @@ struct OpenedPair {
     [[nodiscard]] std::uint32_t rows() const { return (has_inner ? 1 : 0) + leaf_rows + aparts; }
 };
 
-/// Rows and leaves in equal parts, so that what follows has room for what is left.
+/// Spreads rows and leaves in equal parts, so that later pairs have room for the rest.
 std::vector<OpenedPair> spread(const QueryDeal& deal) {
     std::vector<OpenedPair> out(deal.node_pairs + 1);
     auto leaves_left = static_cast<std::uint32_t>(deal.leaves.size());
@@ -152,7 +152,7 @@ std::vector<OpenedPair> spread(const QueryDeal& deal) {
     return out;
 }
 
-/// Whether no node has more children than a node can.
+/// Whether no node has more than kChildren children.
 bool has_room(const QueryDeal& deal) {
     auto leaf = deal.leaves.begin();
     for (const OpenedPair& pair : spread(deal)) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A group's share dealt out to its queries, and the bodies of a query that comes to its part.
+// Deals a group's share out to its queries, and constructs bodies whose query causes that work.
 #pragma once
 
 #include <cstdint>
@@ -32,11 +32,11 @@ struct QueryDeal {
 };
 [[nodiscard]] WorkLists work_of(const QueryDeal& deal) noexcept;
 
-/// Empty, or why these lists cannot be filled: they do not go together.
+/// Returns an empty string, or a message if these lists cannot be filled together.
 [[nodiscard]] std::string deal_group(const WorkLists& share, std::uint32_t queries,
                                      CycleLayout layout, std::vector<QueryDeal>& out);
 
-/// Two bodies more. Returns their size in bytes.
+/// Adds two bodies. Returns their size in bytes.
 std::size_t make_bodies(const QueryDeal& deal, TreeBodies& out);
 
 }  // namespace axg

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Trees made by hand, and leaves that cost a chosen number of everything. Children of a node lie on
-// a line, so that a child of a is near the child of b in the same place and near no other; boxes
-// may be larger than what they hold, and nodes share children. mm.
+// Constructed trees, and leaves with a chosen number of entries in every list. The children of a
+// node are on a line: a child of a is near the child of b in the same slot and near no other. Boxes
+// may be larger than their contents, and nodes share children. mm.
 #pragma once
 
 #include <algorithm>
@@ -17,17 +17,17 @@
 namespace axg {
 
 // Two triangles whose corners are 1.27 mm apart and which, at a margin of 1 mm, neither the shared
-// axes nor the seventeen prove apart: the closest direction alone does. Found by drawing at random;
-// tests/unit/worst_case_batch_test holds them to it.
+// axes nor the seventeen prove apart: only the closest direction does. Found by random search;
+// tests/unit/core/worst_case/worst_case_batch_test checks them.
 inline constexpr float kCorner[9] = {-0.625F,   -0.78125F, -0.78125F, -2.875F,  -5.03125F,
                                      -5.03125F, -1.875F,   -1.78125F, -2.28125F};
 inline constexpr float kOther[9] = {0, 0, 0, 0.25F, 2.75F, 0.75F, 2, 4.5F, 4};
-// Exactly the margin beside kOther, corner to corner: neither certified within it nor apart in
+// Exactly the margin away from kOther, corner to corner: neither certified within it nor apart in
 // float, and in double neither.
 inline constexpr float kBeside[9] = {-1, 0, 0, -2.5F, -1, -1.25F, -2, -2.5F, -0.5F};
 
 inline constexpr float kSlotMm =
-    40;  // children of a node lie on a line, far more than the margin apart
+    40;  // children of a node are on a line, far more than the margin apart
 inline constexpr std::uint32_t kChildren = kNodeWidth;
 inline constexpr float kLineMm = kSlotMm * kChildren;
 // Half widths of the boxes of children: a's have room for a leaf that b's do not reach.
@@ -35,7 +35,7 @@ inline constexpr float kHalfA = 18, kHalfB = 8;
 inline constexpr float kFarMm = 1.0e30F;
 
 /// A pair of leaves: every triangle of a is near every one of b; `touching` of a's touch all of b.
-/// None near: boxes of the leaves overlap, and those of no two triangles.
+/// none_near: the boxes of the leaves overlap, but no boxes of two triangles do.
 struct LeafRecipe {
     std::uint32_t a = kChildren, b = 1, touching = 0;
     bool none_near = false;
@@ -43,7 +43,7 @@ struct LeafRecipe {
     friend auto operator<=>(const LeafRecipe&, const LeafRecipe&) = default;
 
     [[nodiscard]] std::uint32_t pairs() const { return none_near ? 0 : a * b; }
-    /// Of boxes, in the clipping. With one triangle of b none of a is near all of b.
+    /// Rows of boxes in the clipping. With one triangle of b none of a is near all of b.
     [[nodiscard]] std::uint32_t rows() const { return none_near && b == 1 ? 0 : b; }
 };
 
@@ -52,7 +52,7 @@ class TreeMaker {
     /// @param half_mm  half width of the children's boxes
     explicit TreeMaker(float half_mm) : half_mm_(half_mm) { data_.nodes.emplace_back(blank()); }
 
-    /// Children of `node`: `count` in a row from the index that is returned.
+    /// Adds `count` children to `node`, in a row from the index that it returns.
     std::uint32_t add_children(std::uint32_t node, std::uint32_t count) {
         const auto first = static_cast<std::uint32_t>(data_.nodes.size());
         data_.nodes.resize(first + count, blank());
@@ -63,12 +63,12 @@ class TreeMaker {
         }
         return first;
     }
-    /// The box of a child in another slot than its own.
+    /// Moves the box of a child to another slot than its own.
     void move_box(std::uint32_t node, std::uint32_t i, std::uint32_t to) {
         place_box(data_.nodes[node], i, slot(to), half_mm_);
     }
-    /// Boxes of children in all places. Of those behind the last child nothing is ever near: far
-    /// away, or in slots where the other body has no child.
+    /// Fills all slots with boxes of children. Those after the last child are never near any other:
+    /// they are far away, or in slots where the other body has no child.
     void fill_boxes(std::uint32_t node, bool is_far) {
         for (std::uint32_t i = data_.nodes[node].count; !is_far && i < kChildren; ++i) {
             place_box(data_.nodes[node], i, slot(i), half_mm_);
@@ -81,7 +81,7 @@ class TreeMaker {
     void share_children(std::uint32_t to, std::uint32_t from) {
         data_.nodes[to] = data_.nodes[from];
     }
-    /// A leaf in slot `i` of its parent; `shape_of` gives the nine coordinates of each triangle.
+    /// Makes a leaf in slot `i` of its parent; `shape_of` returns nine coordinates a triangle.
     template <class ShapeOf>
     void make_leaf(std::uint32_t node, std::uint32_t i, std::uint32_t count,
                    const ShapeOf& shape_of) {
@@ -137,26 +137,26 @@ class TreeMaker {
     std::uint32_t next_triangle_ = 0;
 };
 
-/// Leaves in the same slot below two nodes, as the recipe says.
+/// Makes two leaves in the same slot below two nodes, by the recipe.
 void make_leaf_pair(TreeMaker& a, std::uint32_t node_a, TreeMaker& b, std::uint32_t node_b,
                     std::uint32_t slot, const LeafRecipe& recipe);
 
-/// The same of leaves that are full: triangles that are near nothing fill them up, and those of a
-/// that are near lie in as many lanes as they can.
+/// The same with full leaves: triangles far from all others fill them up, and the near ones of a
+/// are spread over as many lanes as possible.
 void make_full_leaf_of_a(TreeMaker& a, std::uint32_t node, std::uint32_t slot,
                          const LeafRecipe& recipe);
 void make_full_leaf_of_b(TreeMaker& b, std::uint32_t node, std::uint32_t slot,
                          const LeafRecipe& recipe);
 
-/// Leaves whose boxes are near as their parents know them, and which are apart once moved: their
-/// pair is looked at the longest way, and not listed.
+/// Makes leaves whose boxes in the parents are near, and whose moved boxes are apart: the traversal
+/// spends the most work on their pair, and does not list it.
 void make_apart(TreeMaker& a, std::uint32_t first_a, TreeMaker& b, std::uint32_t first_b,
                 std::uint32_t slot);
 
-/// A leaf of b that nothing of a is near.
+/// Makes a leaf of b that is far from every leaf of a.
 void make_alone(TreeMaker& b, std::uint32_t first_b, std::uint32_t slot);
 
-/// A full leaf in the first slot, whichever child it is.
+/// Makes a full leaf in the first slot, for any child.
 void make_stacked(TreeMaker& tree, std::uint32_t node);
 
 }  // namespace axg

@@ -11,7 +11,7 @@
 namespace axg {
 namespace {
 
-/// What one query shall come to.
+/// Planned work of one query.
 struct Share {
     std::uint32_t level_pairs, leaf_pairs, box_rows, triangle_pairs, rechecks;
 
@@ -45,7 +45,7 @@ void make_bodies(const Share& share, const Deal& deal, std::uint32_t tree_levels
                 make_leaf_pair(a, first_a + i, b, first_b + i, i, deal.leaves[recipe]);
             } else if (i < rows) {
                 make_apart(a, first_a, b, first_b, i);
-            } else {  // no child of a stands there
+            } else {  // a has no child in this slot
                 make_alone(b, first_b, i);
             }
         }
@@ -61,7 +61,7 @@ void make_bodies(const Share& share, const Deal& deal, std::uint32_t tree_levels
     }
 }
 
-/// Pairs of triangles and rechecks dealt out to a query's pairs of leaves.
+/// Deals pairs of triangles and rechecks out to a query's pairs of leaves.
 std::vector<LeafRecipe> deal_triangles(const Share& share, WorstCaseLayout layout) {
     std::vector<LeafRecipe> leaves(share.leaf_pairs);
     std::uint32_t pairs = share.triangle_pairs, touching = share.rechecks;
@@ -83,7 +83,8 @@ std::vector<LeafRecipe> deal_triangles(const Share& share, WorstCaseLayout layou
     return leaves;
 }
 
-/// Rows of boxes dealt out to opening and clipping. False: the pairs alone take more.
+/// Deals rows of boxes out to opening and clipping. False: the pairs need more, or the root has too
+/// many children.
 bool deal_rows(const Share& share, std::uint32_t tree_levels, WorstCaseLayout layout, Deal& deal) {
     const std::uint32_t inner = tree_levels > 1 ? share.level_pairs : 0;
     deal.root_rows = std::max(1U, inner + share.leaf_pairs);
@@ -119,7 +120,7 @@ bool deal_rows(const Share& share, std::uint32_t tree_levels, WorstCaseLayout la
     return true;
 }
 
-/// What a query of this deal comes to, added to the batch's.
+/// Adds the work of a query of this deal to the batch's.
 void add_work(const Share& share, const Deal& deal, std::uint32_t tree_levels, BatchWork& work) {
     ++work.level_pairs[0];
     work.box_rows += deal.root_rows;
@@ -223,7 +224,7 @@ std::string make_worst_case_batch(const Capacities& capacities, std::uint32_t qu
         fault = fill_exactly(capacities, queries, tree_levels, layout, out);
     }
     for (Query& query : out.queries) {
-        if (capacities.batch.rechecks == 0) {  // as a plan without rechecks queries
+        if (capacities.batch.rechecks == 0) {  // like the queries of a plan without rechecks
             query.kind = QueryKind::farther;
             query.is_float_only = true;
         }

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The worst-case batch: trees and queries that use every list of a batch up to its last
-// place, with entries that take the longest way through every kernel. The trees are made by hand:
-// boxes may be larger than what they hold, and nodes share children, so that the number of
-// everything is chosen and nothing is left to luck. No CUDA here: the CPU's traversal counts the
-// same.
+// place, with entries that cause the most work in every kernel. The trees are constructed: boxes
+// may be larger than their contents, and nodes share children, so that every count is chosen and
+// none is left to chance. No CUDA here: the CPU's traversal counts the same.
 #pragma once
 
 #include <array>
@@ -26,9 +25,9 @@ struct BatchWork {
     friend constexpr bool operator==(const BatchWork&, const BatchWork&) = default;
 };
 
-/// How the work lies. even: pairs of triangles dealt out to all pairs of leaves, rows of boxes to
-/// the opening of nodes. heaped: pairs of triangles in whole leaves, rows in the clipping.
-/// overflowing: everything near everything, every list too short.
+/// How the work is distributed. even: pairs of triangles dealt out to all pairs of leaves, rows of
+/// boxes to the opening of nodes. heaped: pairs of triangles in whole leaves, rows in the clipping.
+/// overflowing: all triangles near all others, every list too short.
 enum class WorstCaseLayout : std::uint8_t { even, heaped, overflowing };
 inline constexpr std::array kWorstCaseLayouts = {WorstCaseLayout::even, WorstCaseLayout::heaped,
                                                  WorstCaseLayout::overflowing};
@@ -36,14 +35,14 @@ inline constexpr std::array kWorstCaseLayouts = {WorstCaseLayout::even, WorstCas
 
 struct WorstCaseBatch {
     TreeBodies bodies;           // two a kind of query
-    std::vector<Query> queries;  // all of one batch; lists are the caller's to add
-    BatchWork work;              // what they come to; of overflowing: at least the capacities
+    std::vector<Query> queries;  // all of one batch; the caller adds lists
+    BatchWork work;              // work of the queries; all 0 for overflowing
 };
 
 inline constexpr double kWorstCaseMarginMm = 1.0;
 
-/// A batch of `queries` queries that open `tree_levels` levels of pairs. Empty, or why these
-/// capacities cannot be filled: they do not go together, and the message says which.
+/// Makes a batch of `queries` queries that open `tree_levels` levels of pairs. Returns an empty
+/// string, or a message that names the capacities that cannot be filled together.
 [[nodiscard]] std::string make_worst_case_batch(const Capacities& capacities, std::uint32_t queries,
                                                 std::uint32_t tree_levels, WorstCaseLayout layout,
                                                 WorstCaseBatch& out);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a build without a CUDA compiler has in place of the other kernels.
+// Replaces the other kernels in a build without a CUDA compiler.
 #include "cuda/bench/leaf_kernels.hpp"
 
 namespace axg {

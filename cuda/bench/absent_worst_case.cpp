@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a build without a CUDA compiler has in place of the measurement of worst-case batches.
+// Replaces the measurement of worst-case batches in a build without a CUDA compiler.
 #include "cuda/bench/measure_worst_case.hpp"
 
 namespace axg {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the last batch of an engine came to, read from the device. For cuda/ and its tests alone.
+// The work of an engine's last batch, read from the device. Only for cuda/ and its tests.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace axg::cuda {
 
-/// Pairs of nodes and leaves that were handled, rows that were tested, pairs of triangles that were
-/// counted, tested or not, and rechecks that were done. `fault` is set where the device fails.
+/// Returns the handled pairs of nodes and leaves, the tested rows, the counted pairs of triangles,
+/// tested or not, and the rechecks done. Sets `fault` if the device fails.
 [[nodiscard]] BatchWork last_work(const CudaEngine::Parts& parts, std::string& fault);
 
 }  // namespace axg::cuda

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Other kernels for pairs of leaves than the engine's own, to be measured beside it: the same bits,
-// another way to the axis data. No CUDA type shows here.
+// Kernels for pairs of leaves to compare with the engine's own: they give the same bits from
+// another source of the axis data. This header has no CUDA types.
 #pragma once
 
 #include <span>
@@ -15,8 +15,8 @@ struct LeafKernel {
     cuda::LaunchLeaves launch;  // null: the engine's own
 };
 
-/// computed (the engine's own), cached, prefetched, and rolled: computed, with its axis loops left
-/// as loops. What they are: AxisData in cuda/engine/kernels.hpp. Empty in a build without CUDA.
+/// computed (the engine's own), cached, prefetched, and rolled (computed without unrolled axis
+/// loops). AxisData in cuda/engine/kernels.hpp defines the first three. Empty without CUDA.
 [[nodiscard]] std::span<const LeafKernel> leaf_kernels() noexcept;
 
 namespace cuda {

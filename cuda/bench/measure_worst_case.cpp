@@ -41,11 +41,11 @@ namespace {
 using namespace cuda;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kHogBytes = std::size_t{64} << 20U;  // beyond any cache of these devices
+constexpr std::size_t kHogBytes = std::size_t{64} << 20U;  // larger than any cache of these devices
 constexpr std::size_t kBusBytes = std::size_t{8} << 20U;
 constexpr int kHogCopies = 24;  // at 5 TB/s more than a millisecond
 
-/// What stands beside a batch.
+/// The state of the caches and the load on the device during a batch.
 enum class Condition : std::uint8_t { warm, cold, beside };
 constexpr std::array kConditions = {Condition::warm, Condition::cold, Condition::beside};
 
@@ -54,7 +54,7 @@ const char* name_of(Condition condition) {
     return kNames[static_cast<unsigned>(condition)];
 }
 
-/// Memory and a stream of its own for what stands beside a batch.
+/// Memory and a separate stream to clear the caches before a batch or to copy during it.
 class Hog {
   public:
     Hog() {
@@ -102,17 +102,17 @@ class Hog {
 constexpr std::uint32_t kAmple = 1U << 30U;
 constexpr std::size_t kNoLayout = kWorstCaseLayouts.size();
 
-/// A batch's queries as parts of boxes that the engine has most work to pose: with as many joints
-/// as there can be. The parts of a root are of two kinds of bodies at most: the first ones lie in
-/// the travel of pruned surfaces. Nothing moves, so every pose is what the batch was made for.
+/// A batch's queries as parts of boxes that need the most work for posing: with the most joints
+/// possible. The parts of a root have at most two kinds of bodies: the first ones are within the
+/// travel of pruned surfaces. No joint moves a body, so every pose is the one the batch needs.
 struct PosedBatch {
     std::vector<QueryTree> trees;
     std::vector<TreeRoot> roots;
-    std::vector<Query> queries;  // behind the parts
+    std::vector<Query> queries;  // after the parts
     std::uint32_t depth = 1;
 
     PosedBatch() = default;
-    /// @param roots_max, trees_max  of a call of the guard; of more kinds of bodies there are more
+    /// @param roots_max, trees_max  of a call of the guard; more kinds of bodies need more roots
     PosedBatch(const WorstCaseBatch& batch, std::uint32_t roots_max, std::uint32_t trees_max) {
         std::vector<Query> sorted = batch.queries;
         std::stable_sort(sorted.begin(), sorted.end(),
@@ -149,13 +149,13 @@ struct PosedBatch {
         }
         return fit;
     }
-    /// All cuts go along the first joint, which moves nothing; the others turn by nothing.
+    /// All cuts are along the first joint, whose direction is zero; the others turn by 0 rad.
     static QueryTree tree_of(const Query& query, std::uint32_t depth) {
         QueryTree tree;
         tree.is_float_only = true;
         tree.may_be_pruned = true;
         tree.joints = kTreeJointsMax;
-        tree.split = kTreeJointsMax - 1;  // one thread has nearly all
+        tree.split = kTreeJointsMax - 1;  // one thread poses nearly all joints
         tree.r_mm = query.r_mm;
         for (PathJoint& joint : tree.joint) {
             joint.is_linear = false;
@@ -170,7 +170,7 @@ struct PosedBatch {
         }
         return tree;
     }
-    /// Parts up to where the kind changes lie at 0 or below.
+    /// Places the root so that the parts before the change of kind are below 0.
     static TreeRoot root_of(std::span<const Query> parts) {
         const auto changes = [&parts](const Query& q) { return q.mesh_a != parts[0].mesh_a; };
         const auto first = std::find_if(parts.begin(), parts.end(), changes) - parts.begin();
@@ -180,7 +180,7 @@ struct PosedBatch {
         root.pruned_b = parts[0].mesh_b;
         root.mesh_a = other.mesh_a;
         root.mesh_b = other.mesh_b;
-        // Part p lies at centre + kPartMm (p + 1/2 - n/2).
+        // Part p is centred at centre + kPartMm (p + 1/2 - n/2).
         const double middle = 0.5 * static_cast<double>(parts.size());
         root.centre[0] = kPartMm * (middle - static_cast<double>(first));
         return root;
@@ -190,15 +190,16 @@ struct PosedBatch {
 /// A call in one layout, ready to be run.
 struct Filled {
     WorstCaseBatch batch;
-    PosedBatch posed;                     // empty where the host poses
-    std::vector<GroupWork> groups, work;  // as the call begins with them, and as it left them
+    PosedBatch posed;                     // empty if the host poses
+    std::vector<GroupWork> groups, work;  // before the call, and after it
     std::vector<QueryResult> results;
 };
 
 /// Calls of a cycle, in their order.
 using FilledCycle = std::vector<Filled*>;
 
-/// One group of them all, or none. Of an exact layout the batch's own size is the end of its lists.
+/// One group of all queries of a stage, else none. In an exact layout only the size of the batch
+/// bounds its lists.
 std::vector<GroupWork> groups_of(const WorstCaseCall& call, WorstCaseLayout layout) {
     const BatchCapacities& batch = call.capacities.batch;
     const WorkLists lists{batch.level_pairs, batch.leaf_pairs, batch.box_rows, batch.triangle_pairs,
@@ -208,7 +209,7 @@ std::vector<GroupWork> groups_of(const WorstCaseCall& call, WorstCaseLayout layo
     return std::vector<GroupWork>(call.is_stage ? 1 : 0, {.share = share});
 }
 
-/// One engine's bodies: those of `more` behind those that are there.
+/// Appends the bodies of `more` to those of an engine.
 void append(TreeBodies& bodies, WorstCaseBatch& more) {
     const auto first = static_cast<std::uint32_t>(bodies.trees.size());
     for (Query& query : more.queries) {
@@ -222,7 +223,7 @@ void append(TreeBodies& bodies, WorstCaseBatch& more) {
     }
 }
 
-/// An engine's lists: of several calls the longest of each.
+/// The lists of an engine: each has the longest length of all calls.
 Capacities longest_of(const WorstCaseCycle& cycle) {
     Capacities out = cycle.calls.front().capacities;
     for (const WorstCaseCall& call : cycle.calls) {
@@ -240,7 +241,7 @@ Capacities longest_of(const WorstCaseCycle& cycle) {
 /// Every call of the cycle in every layout, over the bodies of one engine.
 class Fillings {
   public:
-    /// Empty, or why these capacities cannot be filled.
+    /// Returns an empty text, or why these capacities cannot be filled.
     std::string make(const WorstCaseCycle& cycle, std::uint32_t queries_max) {
         for (const WorstCaseLayout layout : kWorstCaseLayouts) {
             for (const WorstCaseCall& call : cycle.calls) {
@@ -266,7 +267,7 @@ class Fillings {
         const std::size_t calls = filled_.size() / kWorstCaseLayouts.size();
         return *filled_[layout * calls + call];
     }
-    /// Naming what touches is work too.
+    /// Gives every query a list: listing the touching pairs is work too.
     void list_touching(std::span<TriangleIds> list) {
         for (const std::unique_ptr<Filled>& filled : filled_) {
             for (Query& query : filled->batch.queries) {
@@ -292,8 +293,8 @@ void run(CudaEngine& engine, Filled& filled) {
     }
 }
 
-/// The batch did what it was made for: an exact layout fills every list, an overflowing one leaves
-/// every query unproven.
+/// Checks the work of a batch: an exact layout fills every list; an overflowing one leaves every
+/// query unproven. Returns the fault, or an empty text.
 std::string wrong_work(CudaEngine& engine, Filled& filled, WorstCaseLayout layout) {
     run(engine, filled);
     if (engine.fault() != nullptr) {
@@ -315,8 +316,8 @@ std::string wrong_work(CudaEngine& engine, Filled& filled, WorstCaseLayout layou
     return fault;
 }
 
-/// Cycles beside something. What they took is added to `line`, and the time of each call to
-/// `spent_us`. Empty, or why they could not be measured.
+/// Measures cycles under one condition. Adds their times to `line`, and the time of each call to
+/// `spent_us`. Returns the fault, or an empty text.
 std::string measure_line(CudaEngine& engine, const WorstCaseCycle& cycle, const FilledCycle& filled,
                          Condition condition, Hog& hog, std::vector<double>& spent_us,
                          WorstCaseMeasurement::Line& line) {
@@ -344,7 +345,7 @@ std::string measure_line(CudaEngine& engine, const WorstCaseCycle& cycle, const 
     return engine.fault() == nullptr ? std::string() : engine.fault();
 }
 
-/// Under each condition; the time of each call, all together, in `spent_us`.
+/// Measures under each condition. Stores the total time of each call in `spent_us`.
 std::string measure_conditions(CudaEngine& engine, const FilledCycle& filled, const char* layout,
                                Hog& hog, std::vector<double>& spent_us, WorstCaseMeasurement& out) {
     std::string fault;
@@ -362,8 +363,8 @@ std::string measure_conditions(CudaEngine& engine, const FilledCycle& filled, co
     return fault;
 }
 
-/// All calls in one layout after the other; then, where they are not the same, each call in the
-/// layout in which it took longest.
+/// Measures all calls in each layout in turn. If the slowest layout is not the same for all calls,
+/// measures a cycle with each call in its slowest layout too.
 std::string measure_layouts(CudaEngine& engine, const Fillings& fillings, Hog& hog,
                             WorstCaseMeasurement& out) {
     const std::size_t calls = out.cycle.calls.size();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long the longest cycle of a machine takes on the device at hand, call for call: the
-// worst-case batch (core/worst_case/worst_case_batch.hpp), with its lists in the caches, out of
-// them, and beside another user of memory and bus. Microseconds, launch to last result. No CUDA
-// type shows here.
+// Measures the time of the longest cycle of a machine on the present device, call by call: the
+// worst-case batch (core/worst_case/worst_case_batch.hpp) with warm caches, with cold caches, and
+// during copies that use memory and bus. Microseconds, from launch to last result. This header has
+// no CUDA types.
 #pragma once
 
 #include <cstdint>
@@ -17,18 +17,18 @@ namespace axg {
 
 /// A call of the engine that fills all its lists.
 struct WorstCaseCall {
-    Capacities capacities{};      // with the lists of the call as those of a batch
+    Capacities capacities{};      // capacities.batch: the lists of the call
     std::uint32_t queries = 512;  // in one launch: at most CudaOptions::queries_max
-    bool is_stage = false;        // they are in a group, whose work is charged
-    // And parts of so many boxes and tasks, which the engine poses, in float; 0: the host poses.
+    bool is_stage = false;        // the queries are in a group, whose work is charged
+    // Float-only parts of at most this many boxes and tasks, posed by the engine; 0: by the host.
     std::uint32_t roots_max = 0, trees_max = 0;
-    std::uint32_t times = 1;  // one behind the other
+    std::uint32_t times = 1;  // runs in sequence
 };
 
-/// What a cycle may come to, and how often to measure it.
+/// The calls of the longest cycle, and how often to measure it.
 struct WorstCaseCycle {
     std::uint32_t tree_levels = 2;     // CudaEngine::tree_levels() of the machine's engine
-    std::vector<WorstCaseCall> calls;  // one behind the other, on one engine
+    std::vector<WorstCaseCall> calls;  // in sequence, on one engine
     std::uint32_t count = 150;         // cycles of each layout, a third under each condition
 };
 
@@ -38,7 +38,7 @@ struct WorstCaseCycle {
 
 struct WorstCaseMeasurement {
     struct Line {
-        // Of each call's work; "slowest": of each call the layout in which it took longest.
+        // Layout of each call's work; "slowest": each call has the layout with its longest time.
         std::string layout, condition;
         std::vector<double> cycle_us;  // in the order they were measured
     };
@@ -48,9 +48,9 @@ struct WorstCaseMeasurement {
     double us_max = 0;  // of all lines
 };
 
-/// The engine it makes for that is given back. Empty, with `fault` set: no device, capacities
-/// that cannot be filled, or a batch that did not do the work it was made for.
-/// Precondition: at least one call; all of stages, or none.
+/// Measures with an engine of its own and destroys it. Returns nothing and sets `fault` without a
+/// device, if the capacities cannot be filled, or if a batch did not do the work planned for it.
+/// Precondition: at least one call; all calls are stages, or none.
 [[nodiscard]] std::optional<WorstCaseMeasurement> measure_worst_case(const CudaOptions& options,
                                                                      const WorstCaseCycle& cycle,
                                                                      std::string& fault);

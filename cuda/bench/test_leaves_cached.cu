@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs of leaves with the axis data of a triangle worked out once, in shared memory.
+// Pairs of leaves; the axis data of a triangle are computed once, in shared memory.
 #include "cuda/bench/leaf_kernels.hpp"
 #include "cuda/engine/test_leaves.cuh"
 

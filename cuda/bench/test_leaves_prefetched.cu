@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs of leaves with the axis data in shared memory, and the next pair on its way (asynchronous
+// Pairs of leaves with the axis data in shared memory, while the next pair loads (asynchronous
 // copies since compute capability 8.0).
 #include "cuda/bench/leaf_kernels.hpp"
 #include "cuda/engine/test_leaves.cuh"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs of leaves with computed axis data and axis loops that are left as loops.
+// Pairs of leaves with computed axis data and without unrolled axis loops.
 #include "cuda/bench/leaf_kernels.hpp"
 #include "cuda/engine/test_leaves.cuh"
 

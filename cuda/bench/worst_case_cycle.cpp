@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cycles to measure; no device is needed to say what they are.
+// Cycles to measure; their description needs no device.
 #include "cuda/bench/measure_worst_case.hpp"
 
 namespace axg {

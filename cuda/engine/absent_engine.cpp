@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a build without a CUDA compiler has in place of the CUDA engine: a create() that says so.
+// Replaces the CUDA engine in a build without a CUDA compiler: create() reports that it is absent.
 #include "core/base/assert.hpp"
 #include "cuda/engine/cuda_engine.hpp"
 
@@ -16,7 +16,7 @@ std::optional<CudaEngine> CudaEngine::create(std::span<const Mesh* const>, const
     return std::nullopt;
 }
 
-// Nobody gets an engine from this build, so nobody can call what follows.
+// create() returns no engine in this build, so no caller can reach these functions.
 CudaEngine::CudaEngine(std::unique_ptr<Parts> parts) noexcept : parts_(std::move(parts)) {}
 CudaEngine::CudaEngine(CudaEngine&&) noexcept = default;
 CudaEngine::~CudaEngine() = default;

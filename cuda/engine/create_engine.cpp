@@ -14,7 +14,7 @@ using namespace cuda;
 
 constexpr std::uint32_t kWarmUpUs = 10'000'000;
 
-/// Gives out one block of memory, or with no block counts what would be needed.
+/// Divides one block of memory into arrays. Without a block it only counts the bytes needed.
 class MemoryBlock {
   public:
     explicit MemoryBlock(std::byte* base) : base_(base) {}
@@ -47,14 +47,14 @@ void place_trees(Trees& trees, DeviceBuffers& b, MemoryBlock& block) {
         tree.nodes = block.take<TreeNode>(built[i].nodes.size());
         tree.leaves = block.take<TreeLeaf>(built[i].leaves.size());
     }
-    // Whole slices, so that their sums need no special case at the end.
+    // Round up to whole slices: their sums then need no special case at the end.
     constexpr std::size_t kSliceBytes = std::size_t{kSliceWords} * 16;
     b.sums.slices = static_cast<std::uint32_t>((block.used() + kSliceBytes - 1) / kSliceBytes);
     trees.bytes = b.sums.slices * kSliceBytes;
     block.take<std::byte>(trees.bytes - block.used());
 }
 
-/// As long as either kind of batch needs them.
+/// Each list has the larger of the two lengths that proofs and clearances need.
 void place_lists(DeviceBuffers& b, const DeviceLimits& other, MemoryBlock& block) {
     const DeviceLimits& limits = b.limits;
     const std::size_t queries = limits.queries;
@@ -74,7 +74,7 @@ void place_lists(DeviceBuffers& b, const DeviceLimits& other, MemoryBlock& block
     b.values = block.take<double>(queries * limits.candidates);
 }
 
-/// Pinned memory; `parts` keeps it as the host sees it, the buffers as the device does.
+/// Pinned memory: `parts` stores the host addresses, `parts.buffers` the device addresses.
 void place_pinned(CudaEngine::Parts& parts, MemoryBlock& host, MemoryBlock& device) {
     const DeviceLimits& limits = parts.buffers.limits;
     parts.head = host.take<BatchHead>(1);
@@ -105,7 +105,7 @@ DeviceLimits limits_of(const Capacities& capacities, const CudaOptions& options,
     limits.rechecks = pose_rechecks(capacities);
     limits.candidates = options.candidates;
     const BatchCapacities& batch = capacities.batch;
-    limits.level_pairs = std::max(batch.level_pairs, limits.queries);  // room for all roots
+    limits.level_pairs = std::max(batch.level_pairs, limits.queries);  // holds all roots
     limits.leaf_pairs = batch.leaf_pairs;
     limits.box_rows = batch.box_rows;
     limits.batch_triangle_pairs = batch.triangle_pairs;
@@ -116,7 +116,7 @@ DeviceLimits limits_of(const Capacities& capacities, const CudaOptions& options,
     return limits;
 }
 
-/// A batch with a clearance query: its own lists, and no limit of its work together.
+/// A batch with a clearance query: its own lists, and no limit on the total work of the batch.
 DeviceLimits clearance_limits_of(DeviceLimits limits, const CudaOptions& options) {
     limits.level_pairs = std::max(options.level_pairs, limits.queries);
     limits.leaf_pairs = options.leaf_pairs;
@@ -125,8 +125,8 @@ DeviceLimits clearance_limits_of(DeviceLimits limits, const CudaOptions& options
     return limits;
 }
 
-/// A batch of queries in groups: their shares bound it, and no capacity a query. Its lists are
-/// those of a clearance, far longer than shares of a plan are together.
+/// A batch of queries in groups: the shares bound its node and triangle pairs, not capacities. Its
+/// lists are those of a clearance, far longer than the sum of the shares of a plan.
 DeviceLimits stage_limits_of(DeviceLimits limits, const DeviceLimits& clearance) {
     limits.level_pairs = clearance.level_pairs;
     limits.leaf_pairs = clearance.leaf_pairs;
@@ -144,7 +144,7 @@ bool failed(cudaError_t error, const char* what, std::string& fault) {
     return true;
 }
 
-/// Trees, lists and pinned memory: one block on either side, and nothing after that.
+/// Trees, lists and pinned memory: one block on the device and one on the host, and no later ones.
 bool reserve(CudaEngine::Parts& parts, Trees& trees, std::string& fault) {
     MemoryBlock count(nullptr), pinned_count(nullptr), none(nullptr);
     place_trees(trees, parts.buffers, count);
@@ -188,7 +188,7 @@ bool reserve(CudaEngine::Parts& parts, Trees& trees, std::string& fault) {
                    "trees", fault);
 }
 
-/// Reads the trees back and sums them up, so that what was uploaded is checked too.
+/// Reads the trees back and sums them up. This also checks the upload.
 bool sum_trees(CudaEngine::Parts& parts, const Trees& trees, std::string& fault) {
     parts.buffers.sums.words = reinterpret_cast<const std::uint32_t*>(parts.device_memory);
     std::vector<std::uint32_t> words(trees.bytes / sizeof(std::uint32_t));
@@ -272,7 +272,7 @@ void warm_up(CudaEngine& engine) {
     query.is_float_only = true;
     engine.run({&query, 1}, {&result, 1}, {&group, 1});
     QueryTree tree;
-    tree.is_float_only = true;  // as all are: no kernel of that graph tests in double
+    tree.is_float_only = true;  // required: no kernel of that graph tests in double
     const TreeRoot root;
     QueryResult both[2];
     if (engine.parts_max() >= std::size(both)) {
@@ -288,7 +288,7 @@ void warm_up(CudaEngine& engine) {
 std::optional<CudaEngine> CudaEngine::create(std::span<const Mesh* const> meshes,
                                              const Capacities& capacities,
                                              const CudaOptions& options, std::string& fault) {
-    CudaDevice device;  // trees take their time: not for nothing
+    CudaDevice device;  // opened first: building trees is slow and useless without a device
     if (!cuda::open_device(device, fault)) {
         return std::nullopt;
     }
@@ -297,7 +297,7 @@ std::optional<CudaEngine> CudaEngine::create(std::span<const Mesh* const> meshes
         const bool is_usable = has_usable_triangles(*mesh);
         bodies.trees.push_back(is_usable ? build_tree(*mesh) : TreeData{});
         bodies.reach_mm.push_back(reach_of(*mesh));
-        // A tree of one leaf too: the first opening takes it to the leaves.
+        // A tree of one leaf also needs one level: the first opening lists it as a leaf.
         bodies.tree_levels =
             std::max(bodies.tree_levels, bodies.trees.back().depth - (is_usable ? 1U : 0U));
     }
@@ -326,7 +326,7 @@ std::optional<CudaEngine> CudaEngine::Parts::engine_over(const TreeBodies& bodie
     parts->groups_here.reserve(parts->buffers.limits.queries);
     parts->place_of_group.assign(kGroupsMax, kNoGroup);
     if (!reserve(*parts, trees, fault) || !sum_trees(*parts, trees, fault) ||
-        // Copies and zeroes are on another stream than the batches.
+        // Copies and memsets ran on another stream than the batches will.
         failed(cudaDeviceSynchronize(), "filling the memory", fault) ||
         !record(*parts, parts->buffers.limits, options.launch_leaves, parts->proofs, fault) ||
         !record(*parts, parts->clearance_limits, options.launch_leaves, parts->clearances, fault) ||
@@ -337,7 +337,7 @@ std::optional<CudaEngine> CudaEngine::Parts::engine_over(const TreeBodies& bodie
         return std::nullopt;
     }
     // The first launch of a kernel loads it: every kernel runs once before the first cycle.
-    // That takes longer than a batch may.
+    // Loading may exceed the deadline of a batch, so the warm-up has a longer one.
     CudaEngine engine(std::move(parts));
     engine.parts_->deadline_us = std::max(options.deadline_us, kWarmUpUs);
     warm_up(engine);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A batch as the host sees it: queries into pinned memory, one launch, results polled until the
-// deadline. Nothing here allocates, and nothing waits without a limit.
+// The host's side of a batch: writes queries to pinned memory, launches once, polls results until
+// the deadline. No function here allocates or waits without a limit, except the destructor.
 #include "cuda/engine/cuda_engine.hpp"
 
 #include <algorithm>
@@ -20,10 +20,10 @@ namespace {
 using namespace cuda;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kAhead = 12;  // results
-constexpr int kPoison = 0xa5;       // no result that was not written looks like one
+constexpr std::size_t kAhead = 12;  // results to prefetch ahead
+constexpr int kPoison = 0xa5;       // fills results before a batch: an unwritten one is not valid
 
-/// One result out of pinned memory; false where it is not there yet, or not whole.
+/// Reads one result from pinned memory. False if it has not arrived or is incomplete.
 bool read_result(DeviceResult& from, std::uint32_t sequence, QueryResult& to) noexcept {
     if (std::atomic_ref<std::uint32_t>(from.sequence).load(std::memory_order_acquire) != sequence) {
         return false;
@@ -46,7 +46,7 @@ bool read_result(DeviceResult& from, std::uint32_t sequence, QueryResult& to) no
     return true;
 }
 
-/// What a group of a stage came to; as above.
+/// Reads the work of one group of a stage in the same way.
 bool read_result(DeviceGroupResult& from, std::uint32_t sequence, GroupWork& to) noexcept {
     if (std::atomic_ref<std::uint32_t>(from.sequence).load(std::memory_order_acquire) != sequence) {
         return false;
@@ -60,7 +60,7 @@ bool read_result(DeviceGroupResult& from, std::uint32_t sequence, GroupWork& to)
     return true;
 }
 
-/// Polls one result. False: it did not come whole in time.
+/// Polls one result. False: it was late or incomplete at the deadline.
 template <class From, class To>
 bool wait_for(From& from, std::uint32_t sequence, Clock::time_point deadline, To& to) noexcept {
     for (;;) {
@@ -75,7 +75,7 @@ bool wait_for(From& from, std::uint32_t sequence, Clock::time_point deadline, To
     }
 }
 
-/// The groups of a launch get places of their own, in the order they are met.
+/// Numbers the groups that occur in a launch, in order of first use.
 class GroupPlaces {
   public:
     GroupPlaces(CudaEngine::Parts& parts, std::span<const GroupWork> groups) noexcept
@@ -108,7 +108,7 @@ class GroupPlaces {
     std::span<const GroupWork> groups_;
 };
 
-/// Each block of parts gets the roots that its parts are of, and the tree of the first.
+/// Gives each block of parts the roots of its parts and the tree of the first root.
 void place_parts(CudaEngine::Parts& parts, const PartQueries& asked, GroupPlaces& places) noexcept {
     for (std::uint32_t i = 0; i < asked.roots.size(); ++i) {
         TreeRoot root = asked.roots[i];
@@ -123,11 +123,11 @@ void place_parts(CudaEngine::Parts& parts, const PartQueries& asked, GroupPlaces
             }
         }
     }
-    // Of blocks with more trees.
+    // Blocks with more than one tree read them from here.
     std::copy(asked.trees.begin(), asked.trees.end(), parts.query_trees);
 }
 
-/// The touching pairs of one query into its list, in the order of their ids.
+/// Copies the touching pairs of one query to its list, sorted by ids.
 void fill_list(const TriangleIds* from, std::uint32_t room, const Query& query,
                const QueryResult& result) noexcept {
     const std::size_t count =
@@ -136,13 +136,13 @@ void fill_list(const TriangleIds* from, std::uint32_t room, const Query& query,
     std::sort(query.list.begin(), query.list.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
-/// What a launch is about: parts of boxes, and queries behind them.
+/// Input of one launch: parts of boxes, followed by queries.
 struct Asked {
     const PartQueries& parts;
     std::span<const Query> queries;
 };
 
-/// Into pinned memory. Returns the batch's graph.
+/// Writes the batch to pinned memory. Returns the graph to launch.
 const BatchGraph& place_batch(CudaEngine::Parts& parts, const Asked& asked,
                               std::span<const GroupWork> groups) noexcept {
     const auto part_count = static_cast<std::uint32_t>(asked.parts.count());
@@ -176,8 +176,8 @@ const BatchGraph& place_batch(CudaEngine::Parts& parts, const Asked& asked,
                                               : parts.proofs;
 }
 
-/// One launch, in groups unless there are none. False: the engine is dead, and no result of it
-/// counts.
+/// Runs one launch, in groups if `groups` is not empty. False: the engine is dead, and all its
+/// results are void.
 bool run_batch(CudaEngine::Parts& parts, const Asked& asked, std::span<QueryResult> results,
                std::span<GroupWork> groups) noexcept {
     const Clock::time_point deadline = Clock::now() + std::chrono::microseconds(parts.deadline_us);
@@ -211,7 +211,8 @@ bool run_batch(CudaEngine::Parts& parts, const Asked& asked, std::span<QueryResu
     return true;
 }
 
-/// Nothing is known yet. False: nothing will be, for the poses come from this thread.
+/// Sets all results to not_run. False: they are bad_rounding, because this thread computes the
+/// poses and does not round to nearest.
 bool begin(std::span<QueryResult> results) noexcept {
     const bool is_exact = rounds_to_nearest();
     std::fill(results.begin(), results.end(),
@@ -219,7 +220,7 @@ bool begin(std::span<QueryResult> results) noexcept {
     return is_exact;
 }
 
-/// A share is spent by all of a group together, in all launches.
+/// Refuses a result if its group exceeded a share in all launches together.
 void refuse(QueryResult& result, const GroupWork& group) noexcept {
     const QueryStatus full = first_full(group);
     if (full != QueryStatus::ok) {
@@ -233,12 +234,12 @@ CudaEngine::CudaEngine(std::unique_ptr<Parts> parts) noexcept : parts_(std::move
 CudaEngine::CudaEngine(CudaEngine&&) noexcept = default;
 
 CudaEngine::~CudaEngine() {
-    // A dead engine's device may never come back: waiting for it here could take for ever.
+    // The device of a dead engine may hang: waiting for it here could block without end.
     if (parts_ == nullptr || parts_->fault != nullptr) {
         return;
     }
-    // What a kernel still writes behind its last result must be there: freeing waits for the
-    // device, not for a partition of it.
+    // A kernel may still write after its last result, and freeing waits for the device but not for
+    // a partition of it.
     static_cast<void>(cudaStreamSynchronize(parts_->partition.stream));
     for (const cuda::BatchGraph& batch : {parts_->proofs, parts_->clearances, parts_->stages,
                                           parts_->float_stages, parts_->part_stages}) {

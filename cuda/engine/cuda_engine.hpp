@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The CUDA engine behind the one narrow interface (core/collision/engine.hpp). Everything is
-// reserved when it is made, printed by its memory plan, then sealed; a batch of queries is one
-// launch of a graph, and its results are polled in pinned memory with a deadline. Any fault of the
-// device, or a result that is late, ends the engine: from then on every result is not_proven. No
-// CUDA type shows here, and a build without a CUDA compiler has this header too: create() then says
-// so.
+// The CUDA engine behind the one narrow interface (core/collision/engine.hpp). create() reserves
+// all memory and lists it in the memory plan; none is allocated later. A batch of queries is one
+// launch of a graph; the host polls its results in pinned memory with a deadline. Any device fault
+// or late result ends the engine: from then on every result is not_proven. This header has no CUDA
+// types: a build without a CUDA compiler has it too, and create() then reports an absent engine.
 #pragma once
 
 #include <cstddef>
@@ -25,30 +24,31 @@ namespace cuda {
 
 struct DeviceBuffers;
 struct Launch;
-/// Launches a kernel for pairs of leaves (cuda/bench/leaf_kernels.hpp); a cudaError_t.
+/// Launches a kernel for pairs of leaves (cuda/bench/leaf_kernels.hpp); returns a cudaError_t.
 using LaunchLeaves = int (*)(const DeviceBuffers& buffers, const Launch& launch) noexcept;
 
 }  // namespace cuda
 
-/// The fault of everything here in a build without a CUDA compiler.
+/// The fault of every create() here in a build without a CUDA compiler.
 inline constexpr const char* kNoCudaInThisBuild =
     "this build has no CUDA engine; build it where nvcc is on the path, or use --engine cpu";
 
 struct CudaOptions {
-    // Of one launch; more are run in turn. A stage's 512 and the known-answer test's, at most 544.
+    // Queries of one launch, at most 544: 512 of a stage and 2 of the known-answer test. Further
+    // queries run in further launches.
     std::uint32_t queries_max = 514;
-    // Lists of a launch with a clearance query, whose time has no bound, or with groups, which
-    // their shares bound; others have those of Capacities::batch. An overflow makes all queries of
-    // the launch not_proven.
+    // Lists of a launch with a clearance query (its time has no bound) or with groups (their shares
+    // bound it). Other launches use the lists of Capacities::batch. An overflow makes all queries
+    // of the launch not_proven.
     std::uint32_t level_pairs = 1U << 16U, leaf_pairs = 1U << 17U;
-    std::uint32_t candidates = 4096;      // a query: pairs of triangles that may set a clearance
-    std::uint32_t listed = 64;            // a query: touching pairs told by name, at most
-    std::uint32_t multiprocessors = 0;    // a partition of so many (a green context); 0: all
+    std::uint32_t candidates = 4096;      // per query: pairs of triangles that may set a clearance
+    std::uint32_t listed = 64;            // per query: touching pairs listed by ids, at most
+    std::uint32_t multiprocessors = 0;    // size of the partition (a green context); 0: all
     std::uint32_t deadline_us = 100'000;  // of one launch, from its start to its last result
-    cuda::LaunchLeaves launch_leaves = nullptr;  // of a measurement; null: the engine's own kernel
+    cuda::LaunchLeaves launch_leaves = nullptr;  // for measurements; null: the engine's own kernel
 };
 
-/// What the engine reserves, byte by byte.
+/// Memory that the engine reserves, in bytes.
 struct CudaMemoryPlan {
     std::size_t trees_bytes = 0, lists_bytes = 0, pinned_bytes = 0;
 
@@ -64,10 +64,10 @@ struct CudaDevice {
 
 class CudaEngine {
   public:
-    /// `capacities.batch` holds for launches that query proofs and counts alone.
-    /// Builds the trees, reserves everything and runs a warm-up batch. Empty, with `fault` set:
-    /// there is no device, or it refused; `fault` says what and what to do. Meshes that are not
-    /// usable keep their index and return bad_query.
+    /// Builds the trees, reserves all memory and runs one warm-up batch of each kind. Returns
+    /// nothing without a device or after a CUDA error; `fault` then names the cause and the remedy.
+    /// `capacities.batch` applies only to launches without clearance queries and groups. Unusable
+    /// meshes occupy an index too; queries about them return bad_query.
     [[nodiscard]] static std::optional<CudaEngine> create(std::span<const Mesh* const> meshes,
                                                           const Capacities& capacities,
                                                           const CudaOptions& options,
@@ -76,26 +76,26 @@ class CudaEngine {
     CudaEngine& operator=(CudaEngine&&) = delete;
     ~CudaEngine();
 
-    /// Each launch has all that `capacities.batch` allows.
+    /// Each launch may use all of `capacities.batch`.
     void run(std::span<const Query> queries, std::span<QueryResult> results) noexcept;
-    /// As `Engine::run_groups`: what shares allow, and no capacity.
+    /// As `Engine::run_groups`: limited by the shares of the groups, not by capacities.
     void run(std::span<const Query> queries, std::span<QueryResult> results,
              std::span<GroupWork> groups) noexcept;
-    /// As `Engine::run_parts`. Precondition: all of them in float alone, at most `parts_max`.
+    /// As `Engine::run_parts`. Precondition: all are float-only, and at most `parts_max` in total.
     void run(const PartQueries& parts, std::span<const Query> queries,
              std::span<QueryResult> results, std::span<GroupWork> groups) noexcept;
     [[nodiscard]] std::uint32_t parts_max() const noexcept;
-    /// As the guard sees it: a stage is a call.
+    /// The interface that the guard uses: one call per stage.
     [[nodiscard]] Engine engine() noexcept;
 
-    /// Why the engine gave up; null while it lives. Nothing revives it.
+    /// Why the engine gave up; null while it works. A dead engine never recovers.
     [[nodiscard]] const char* fault() const noexcept;
     [[nodiscard]] const CudaMemoryPlan& memory() const noexcept;
     [[nodiscard]] const CudaDevice& device() const noexcept;
-    /// Of pairs of nodes that two of its bodies may take to open.
+    /// The most levels of pairs of nodes that a query about two of its meshes opens.
     [[nodiscard]] std::uint32_t tree_levels() const noexcept;
 
-    struct Parts;  // what lies behind; cuda/engine/engine_parts.hpp, for cuda/ and its tests alone
+    struct Parts;  // the implementation: cuda/engine/engine_parts.hpp, only for cuda/ and its tests
     [[nodiscard]] Parts& parts() noexcept { return *parts_; }
 
   private:

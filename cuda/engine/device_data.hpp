@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What lies in the device's memory and in the pinned memory that host and device share. Plain data,
-// no CUDA types: the host lays it out, the kernels fill it. mm.
+// Contents of the device memory and of the pinned memory that host and device share. Plain data
+// without CUDA types: the host lays it out, the kernels fill it. mm.
 #pragma once
 
 #include <cstdint>
@@ -28,8 +28,8 @@ struct DeviceTree {
     float reach_mm = 0;
 };
 
-/// A pair of nodes to be looked at. low_mm: a certified lower bound of the distance of what is in
-/// them (clearance only).
+/// A pair of nodes to open. low_mm: a certified lower bound of the distance between their triangles
+/// (clearance only).
 struct alignas(16) PairEntry {
     std::uint32_t query, a, b;
     float low_mm;
@@ -43,34 +43,34 @@ struct alignas(16) TriangleEntry {
     float low_mm;           // clearance: the certified lower bound in float
 };
 
-/// Whether a query's rechecks fit into what its batch may have.
+/// Whether a query's rechecks fit into the budget of its batch.
 enum RecheckBudget : std::uint32_t { kBudgetUnknown = 0, kBudgetGiven = 1, kBudgetRefused = 2 };
 
-/// What a query has come to so far. Zeroed by the first kernel of a batch.
+/// Work and findings of one query so far. Zeroed by the first kernel of a batch.
 struct Tally {
     std::uint32_t sequence;  // of the batch it was zeroed for
     std::uint32_t refused;   // 1: bad_query
     std::uint32_t near;      // farther; 1: settled as not proven, no recheck is needed
-    std::uint32_t pairs_at[kTreeLevelsMax];  // pairs of nodes found, by tree level
-    std::uint32_t triangle_pairs;            // pairs of triangles left after clipping
-    std::uint32_t rechecks, recheck_done;    // found, and judged
-    std::uint32_t recheck_budget;            // a RecheckBudget
-    std::uint32_t touching, listed;          // not proven apart; of those told by name
-    std::uint32_t candidates;                // clearance: pairs of triangles that may set it
-    std::uint32_t candidates_done[3];        // looked at by each of the last three kernels
-    std::uint32_t least_float;               // bits of the least certified bound in float
-    double bound_mm;                         // clearance: nothing at or beyond this is of interest
+    std::uint32_t pairs_at[kTreeLevelsMax];        // pairs of nodes found, by tree level
+    std::uint32_t triangle_pairs;                  // pairs of triangles left after clipping
+    std::uint32_t rechecks, recheck_done;          // found, and handled
+    std::uint32_t recheck_budget;                  // a RecheckBudget
+    std::uint32_t touching, listed;                // not proven apart; of those listed by ids
+    std::uint32_t candidates;                      // clearance: pairs of triangles that may set it
+    std::uint32_t candidates_done[3];              // handled by each of the last three kernels
+    std::uint32_t least_float;                     // bits of the least certified bound in float
+    double bound_mm;                               // clearance: pairs at or beyond it are skipped
     unsigned long long least_first, least_second;  // bits of the least values in double
     unsigned long long nearest;                    // ids of the pair with that value
 };
 
-/// What the queries of a batch may use together. The first level has a place for every query
-/// besides.
+/// Work that all queries of a batch may use in total. The first level has one place for every query
+/// in addition.
 struct BatchBudget {
     std::uint32_t level_pairs, leaf_pairs, box_rows, triangle_pairs, rechecks;
 };
 
-/// Counters of one batch. A kernel that did not run leaves `handled` behind `listed`.
+/// Counters of one batch. If a kernel did not run, `handled` stays below `listed`.
 struct Counters {
     std::uint32_t sequence, count, groups;
     BatchBudget budget;
@@ -80,8 +80,8 @@ struct Counters {
     std::uint32_t box_rows, triangle_pairs;
 };
 
-/// The trees' memory is summed up a slice a batch and compared with what was uploaded: one changed
-/// bit changes the sum of its slice.
+/// Each batch sums up one slice of the trees' memory and compares it with the sum after the upload:
+/// one changed bit changes the sum of its slice.
 inline constexpr std::uint32_t kSumBlocks = 32, kSumThreads = 64, kSumLoads = 8;
 inline constexpr std::uint32_t kSliceWords = kSumBlocks * kSumThreads * kSumLoads;  // of 16 bytes
 
@@ -92,7 +92,7 @@ struct TreeSums {
     std::uint32_t slices = 0;
 };
 
-/// One share of a slice's sum. The factors are odd, so no single bit is lost.
+/// One share of a slice's sum. The factors are odd, so every single-bit change changes it.
 AXG_HD unsigned long long sum_share(std::uint32_t place, const std::uint32_t (&w)[4]) noexcept {
     const unsigned long long factor = 0x9e3779b97f4a7c15ULL * (2ULL * place + 1);
     return factor * (w[0] + 0xbf58476d1ce4e5b9ULL * w[1]) +
@@ -101,12 +101,12 @@ AXG_HD unsigned long long sum_share(std::uint32_t place, const std::uint32_t (&w
 
 inline constexpr std::uint32_t kNoLimit = 0xffffffffU;
 
-/// Where all of a batch are looked at together: a stage's, the known-answer test's, whole warps.
+/// Size of arrays with one entry per query: 512 of a stage and 2 of the known-answer test, rounded
+/// up to whole warps.
 inline constexpr std::uint32_t kBatchQueriesMax = 544;
 
-/// Parts of boxes are posed so many at a time. Each such block finds what it needs in one place,
-/// so that the device can read it before it knows how much there is: the first tree and the roots.
-/// A root has two parts or more.
+/// A thread block poses kPartsOfBlock parts of boxes. Its first tree and its roots are contiguous,
+/// so that the device can read them before it has read the counts. A root has two parts or more.
 inline constexpr std::uint32_t kPartsOfBlock = 32, kRootsOfBlock = kPartsOfBlock / 2;
 struct PartBlock {
     QueryTree tree;
@@ -120,7 +120,7 @@ struct PartBlock {
 struct BatchHead {
     std::uint32_t sequence = 0, count = 0;
     std::uint32_t groups = 0;            // of a stage
-    std::uint32_t parts = 0, depth = 0;  // the first so many are parts of boxes (PartQueries)
+    std::uint32_t parts = 0, depth = 0;  // the first `parts` queries are PartQueries of this depth
 };
 
 /// One result as the device writes it.
@@ -133,7 +133,7 @@ struct alignas(16) DeviceResult {
 };
 static_assert(sizeof(DeviceResult) == 48);
 
-/// FNV-1a over words: a word that was not written, or not all of it, is found out.
+/// FNV-1a over words: detects a word that was not or only partly written.
 template <unsigned kCount>
 AXG_HD std::uint32_t hash_of(const std::uint32_t (&words)[kCount]) noexcept {
     std::uint32_t hash = 0x811c9dc5U;
@@ -160,7 +160,7 @@ AXG_HD std::uint32_t check_of(const DeviceResult& a) noexcept {
     return hash_of(words);
 }
 
-/// What a group of a stage came to, as the device writes it.
+/// The work of one group of a stage as the device writes it.
 struct alignas(16) DeviceGroupResult {
     std::uint32_t sequence, check;
     std::uint32_t lost, used[kWorkListCount];
@@ -176,15 +176,15 @@ AXG_HD std::uint32_t check_of(const DeviceGroupResult& a) noexcept {
 /// Capacities: a query's own quotas, and the lists all queries of a batch share.
 struct DeviceLimits {
     std::uint32_t queries = 0;                                       // of one batch
-    std::uint32_t node_pairs = 0, triangle_pairs = 0, rechecks = 0;  // a query
-    std::uint32_t candidates = 0;                                    // a query, clearance
-    std::uint32_t level_pairs = 0, leaf_pairs = 0, box_rows = 0;     // a batch
+    std::uint32_t node_pairs = 0, triangle_pairs = 0, rechecks = 0;  // per query
+    std::uint32_t candidates = 0;                                    // per query, clearance
+    std::uint32_t level_pairs = 0, leaf_pairs = 0, box_rows = 0;     // per batch
     std::uint32_t batch_triangle_pairs = 0, batch_rechecks = 0;
     bool measures = false;          // a batch with a clearance query
-    bool is_stage = false;          // queries in groups: what each may use, and nothing else
+    bool is_stage = false;          // queries in groups: the shares of the groups bound the work
     bool poses_parts = false;       // a stage in float that begins with parts of boxes
-    bool has_rechecks = true;       // else no query is tested in double
-    std::uint32_t listed = 0;       // a query: touching pairs told by name
+    bool has_rechecks = true;       // false: no query is tested in double
+    std::uint32_t listed = 0;       // per query: touching pairs listed by ids, at most
     std::uint32_t tree_levels = 0;  // of pairs of nodes to open
     std::uint32_t meshes = 0;
 };
@@ -194,7 +194,7 @@ struct PreparedQuery;
 /// Every address a kernel may touch; a kernel's one parameter.
 struct DeviceBuffers {
     DeviceLimits limits;
-    // Pinned memory, as the device sees it.
+    // Pinned memory, by device addresses.
     const BatchHead* head = nullptr;
     const Query* queries = nullptr;
     const QueryTree* query_trees = nullptr;  // [kQueryTreesMax]

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The traversal's own arithmetic as device code: a thread is a lane of width one. Included by every
-// kernel; what is decided here is decided by the lines the CPU engine reads.
+// The arithmetic of the traversal as device code: a thread is a lane of width one. Every kernel
+// includes it. Every decision uses the same source lines as the CPU engine.
 #pragma once
 
 #include <cuda_runtime.h>
@@ -56,7 +56,7 @@ __device__ __forceinline__ bool is_leaf(const TreeNode& node) {
     return node.leaf != kNoLeaf;
 }
 
-/// Least of a warp's values. A zero may come out with either sign.
+/// Least of a warp's values. A zero may have either sign.
 __device__ __forceinline__ float warp_least(float value) {
     for (unsigned step = kWarp / 2; step != 0; step /= 2) {
         value = fminf(value, __shfl_xor_sync(kAllLanes, value, step));
@@ -69,9 +69,9 @@ struct TightBox {
     float low[3], high[3];
 };
 
-/// The boxes of a warp's triangles together: of the leaf, `leaf_low` and `leaf_high` of the
-/// traversal. Half of the lanes go on with half of the six numbers at each step: 14 exchanges
-/// instead of 30, of which a multiprocessor has one a clock. A zero may come out with either sign.
+/// The union of the boxes of a warp's triangles: `leaf_low` and `leaf_high` of the traversal. The
+/// first steps divide the six numbers among the lanes: 14 exchanges instead of 30, of which a
+/// multiprocessor executes one per clock. A zero may have either sign.
 __device__ __forceinline__ TightBox whole_of(const TightBox& own) {
     const auto least_with = [](float kept, float given, unsigned step) {
         return fminf(kept, __shfl_xor_sync(kAllLanes, given, step));
@@ -99,18 +99,18 @@ __device__ __forceinline__ TightBox whole_of(const TightBox& own) {
     return whole;
 }
 
-/// Where the centres of leaves get in the other body's frame: of a less the origin, of b.
+/// Centres of leaves in the other body's frame: a's less the origin, and b's.
 struct MovedCentres {
     float a[3], b[3];
 };
 
-/// One of three, without an array in memory.
+/// v[k] without an array in local memory.
 __device__ __forceinline__ float one_of(const float* v, unsigned k) {
     return k == 0 ? v[0] : k == 1 ? v[1] : v[2];
 }
 
-/// moved_centre of a leaf of a, and of one of b where kBoth: a coordinate a lane, because small
-/// devices have few units for double. Called by whole warps.
+/// moved_centre of a leaf of a and, with kBoth, of a leaf of b: one coordinate per lane, because
+/// small devices have few units for double. Called by whole warps.
 template <bool kBoth>
 __device__ __forceinline__ MovedCentres move_centres(const PreparedQuery& q, const float* centre_a,
                                                      const float* centre_b, const float* origin) {
@@ -136,8 +136,8 @@ __device__ __forceinline__ MovedCentres move_centres(const PreparedQuery& q, con
     return out;
 }
 
-/// This lane's triangle moved about its leaf's centre, which gets to `shift`; v takes the nine
-/// coordinates unless null.
+/// Moves this lane's triangle about its leaf's centre, which moves to `shift`. Stores the nine
+/// coordinates in v unless it is null.
 __device__ __forceinline__ TightBox move_triangle(const Frame& f, const float* centre,
                                                   const float* shift, const TreeLeaf& leaf,
                                                   unsigned lane, float* v) {
@@ -217,14 +217,14 @@ __device__ __forceinline__ sat::TrianglePair<float> float_pair(const float (*a)[
     return sat::scaled_pair(v.a, v.b, d32);
 }
 
-/// Pairs of nodes that a level may have: the first one has a place for every query.
+/// The most pairs of nodes on a level: the first level has a place for every query.
 __device__ __forceinline__ std::uint32_t tree_level_budget(const DeviceBuffers& b,
                                                            std::uint32_t tree_level) {
     return tree_level == 0 ? b.limits.level_pairs : b.counters->budget.level_pairs;
 }
 
-/// Whether a query used up its pairs of nodes before `tree_level` was opened. Counts of the levels
-/// up to this one are complete then, so the result does not depend on the order of work.
+/// Whether a query exceeded its pairs of nodes before `tree_level` was opened. The counts of the
+/// levels up to this one are complete then, so the result does not depend on the order of work.
 __device__ __forceinline__ bool is_over(const Tally& tally, std::uint32_t tree_level,
                                         std::uint32_t node_pairs) {
     std::uint32_t sum = 0;
@@ -234,7 +234,7 @@ __device__ __forceinline__ bool is_over(const Tally& tally, std::uint32_t tree_l
     return sum > node_pairs;
 }
 
-/// Adds to a list of a group. Whether its share holds that.
+/// Charges `more` to a list of a group. Returns whether its share covers it.
 __device__ __forceinline__ bool charge(GroupSums& group, WorkListPlace list, std::uint32_t more,
                                        std::uint32_t loss) {
     const bool fits = atomicAdd(&group.used[list], more) + more <= group.share[list];
@@ -244,15 +244,15 @@ __device__ __forceinline__ bool charge(GroupSums& group, WorkListPlace list, std
     return fits;
 }
 
-/// Whether a query's group was lost at `loss` or before it; false in a batch without groups. While
-/// a kernel runs two threads may read different answers, so whoever branches on it asks together.
+/// Whether a query's group was lost at `loss` or before; false in a batch without groups. While a
+/// kernel runs, two threads may read different values: threads that branch on it have to vote.
 __device__ __forceinline__ bool is_lost(const DeviceBuffers& b, const PreparedQuery& q,
                                         std::uint32_t loss) {
     return b.limits.is_stage &&
            *static_cast<const volatile std::uint32_t*>(&b.groups[q.group].lost) <= loss;
 }
 
-/// Of all lanes of a warp.
+/// Sum over all lanes of a warp.
 __device__ __forceinline__ std::uint32_t warp_sum(std::uint32_t value) {
     for (unsigned step = kWarp / 2; step != 0; step /= 2) {
         value += __shfl_xor_sync(kAllLanes, value, step);
@@ -260,9 +260,8 @@ __device__ __forceinline__ std::uint32_t warp_sum(std::uint32_t value) {
     return value;
 }
 
-/// Rechecks that a query wants: none where it is not proven whatever they say. Its pairs of
-/// triangles are all counted and tested by then, so the result does not depend on the order of
-/// work.
+/// Rechecks that a query needs: none if it is not proven whatever their results. All its pairs of
+/// triangles are counted and tested by then, so the result does not depend on the order of work.
 __device__ __forceinline__ std::uint32_t rechecks_wanted(const DeviceBuffers& b,
                                                          std::uint32_t query) {
     const Tally& tally = b.tallies[query];

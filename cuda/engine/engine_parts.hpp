@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the CUDA engine is made of. For cuda/ and for the tests that break it on purpose.
+// The parts of the CUDA engine. For cuda/ and for the tests that break it on purpose.
 #pragma once
 
 #include <cuda_runtime.h>
@@ -24,19 +24,19 @@ struct Partition {
     unsigned multiprocessors = 0;
 };
 
-/// Device 0, ready for work. False: `fault` says why there is none.
+/// Opens device 0. On failure returns false and sets `fault` to the reason.
 [[nodiscard]] bool open_device(CudaDevice& device, std::string& fault);
 
-/// A stream on `wanted` multiprocessors (0: all). False: `fault` says why.
+/// Creates a stream on this many multiprocessors (0: all). On failure returns false, sets `fault`.
 [[nodiscard]] bool make_partition(unsigned wanted, Partition& out, std::string& fault);
-/// Its stream and its context. Precondition: nothing runs in it any more.
+/// Destroys its stream and its context. Precondition: no work runs in it.
 void close_partition(const Partition& partition) noexcept;
 
-/// Of a call; Query::group has 16 bits.
+/// The most groups of a call: Query::group has 16 bits.
 inline constexpr std::uint32_t kGroupsMax = 1U << 16U;
 inline constexpr std::uint16_t kNoGroup = 0xffffU;
 
-/// One batch as a graph. Empty nodes mean that it was not captured.
+/// One batch as a graph. Null if it was not captured.
 struct BatchGraph {
     cudaGraph_t graph = nullptr;
     cudaGraphExec_t exec = nullptr;
@@ -53,12 +53,12 @@ struct CudaEngine::Parts {
     cuda::Partition partition;
     std::byte* device_memory = nullptr;
     std::byte* pinned_memory = nullptr;
-    cuda::DeviceBuffers buffers;          // addresses as the device sees them
+    cuda::DeviceBuffers buffers;          // device addresses
     cuda::DeviceLimits clearance_limits;  // of a batch with a clearance query
-    // Of one whose queries are in groups, where none of them is ever tested in double, and where
-    // they begin with parts of boxes besides.
+    // Limits of a batch of queries in groups; without rechecks in double; and, also without them,
+    // beginning with parts of boxes.
     cuda::DeviceLimits stage_limits, float_stage_limits, part_limits;
-    // The same pinned memory as the host sees it.
+    // The same pinned memory, by host addresses.
     cuda::BatchHead* head = nullptr;
     Query* queries = nullptr;
     QueryTree* query_trees = nullptr;
@@ -67,11 +67,11 @@ struct CudaEngine::Parts {
     TriangleIds* listed = nullptr;
     GroupSums* groups_in = nullptr;
     cuda::DeviceGroupResult* groups_out = nullptr;
-    // Without and with the kernels that clearance needs; in groups, with and without rechecks, and
-    // of parts of boxes.
+    // Graphs without and with the kernels that clearance needs; in groups, with and without
+    // rechecks; and beginning with parts of boxes.
     cuda::BatchGraph proofs, clearances, stages, float_stages, part_stages;
     std::uint32_t sequence = 0;  // of the last batch
-    // Groups of a launch: which of the call's, and which of the launch's each of those is.
+    // Groups of a launch: the call's group at each place, and the place of each group of the call.
     std::vector<std::uint16_t> groups_here, place_of_group;
     const char* fault = nullptr;
 

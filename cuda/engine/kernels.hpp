@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One wrapper a kernel: a constant grid, and the status of the launch. Every kernel takes all its
-// addresses from DeviceBuffers; grids are sized by the multiprocessors given, never by a batch.
+// One wrapper per kernel: a constant grid, and the status of the launch. A kernel reads all its
+// addresses from DeviceBuffers. Grids depend on multiprocessors or capacities, never on a batch.
 #pragma once
 
 #include <cuda_runtime.h>
@@ -16,44 +16,44 @@ namespace axg::cuda {
 /// runs; cuda/engine/launch_kernel.cuh.
 inline constexpr int kOverlapsSince = 9;
 
-/// Where kernels go: a stream, how many multiprocessors it has, and what its device can.
+/// Target of a launch: a stream, the number of its multiprocessors, and an ability of its device.
 struct Launch {
     cudaStream_t stream = nullptr;
     unsigned multiprocessors = 1;
     bool overlaps = false;  // a kernel may be set up while the one before it runs
 };
 
-/// Where the test of two triangles has its axis data from: edges, normals, squares and area of each
-/// triangle. computed: from the vertices, for every pair anew. cached: once a triangle and pair of
-/// leaves, in shared memory. prefetched: cached, and the next pair of leaves is on its way while
-/// this one is tested. All give the same bits.
+/// Source of the axis data (edges, normals, squares and area of each triangle) in the test of two
+/// triangles. computed: from the vertices, anew for every pair. cached: computed once per triangle
+/// and pair of leaves, in shared memory. prefetched: cached, and the next pair of leaves loads
+/// while this one is tested. All give the same bits.
 enum class AxisData : std::uint8_t { computed, cached, prefetched };
 
-/// Bytes of one PreparedQuery, which only device code knows.
+/// Bytes of one PreparedQuery, which only device code defines.
 [[nodiscard]] std::size_t prepared_query_size_bytes() noexcept;
 
-/// Zeroes the counters, reads the queries, works out their constants, lists the two roots.
+/// Zeroes the counters, reads the queries, computes their constants, lists the two roots.
 cudaError_t launch_prepare_queries(const DeviceBuffers& buffers, const Launch& launch) noexcept;
-/// The same where parts of boxes come first, which it poses.
+/// The same for a batch that begins with parts of boxes, which it poses.
 cudaError_t launch_prepare_parts(const DeviceBuffers& buffers, const Launch& launch) noexcept;
-/// Clearance: an upper bound of each distance, by going down to the nearest pair of leaves.
+/// Clearance: computes an upper bound of each distance by a descent to the nearest pair of leaves.
 cudaError_t launch_seed_upper_bounds(const DeviceBuffers& buffers, const Launch& launch) noexcept;
 /// Opens every pair of nodes of one tree level.
 cudaError_t launch_open_pairs(const DeviceBuffers& buffers, const Launch& launch,
                               std::uint32_t tree_level) noexcept;
-/// Pairs of leaves: clips their triangles and tests what is left, in float.
+/// Pairs of leaves: clips their triangles and tests the remaining pairs in float.
 cudaError_t launch_test_leaves(const DeviceBuffers& buffers, const Launch& launch) noexcept;
-/// The same for clearance: certified distances in float, and the candidates they leave.
+/// The same for clearance: computes certified distances in float and lists the candidates.
 cudaError_t launch_measure_leaves(const DeviceBuffers& buffers, const Launch& launch) noexcept;
-/// Pairs of triangles that float could not tell apart, in double.
+/// Tests in double the pairs of triangles that float could not decide.
 cudaError_t launch_recheck_pairs(const DeviceBuffers& buffers, const Launch& launch) noexcept;
-/// Clearance: certified distances in double, first (0) of the candidates that float calls nearest,
-/// then (1) of all that are not beyond those.
+/// Clearance: computes certified distances in double, in step 0 of the candidates nearest in float,
+/// in step 1 of all others whose bound in float is below the least of step 0.
 cudaError_t launch_refine_distances(const DeviceBuffers& buffers, const Launch& launch,
                                     unsigned step) noexcept;
-/// Clearance: the candidate with the least distance; of equal ones that with the lowest ids.
+/// Clearance: finds the candidate with the least distance; of equal ones that with the lowest ids.
 cudaError_t launch_pick_nearest(const DeviceBuffers& buffers, const Launch& launch) noexcept;
-/// Results into pinned memory, the batch's sequence number last.
+/// Writes results to pinned memory, each with the batch's sequence number and a check word.
 cudaError_t launch_write_results(const DeviceBuffers& buffers, const Launch& launch) noexcept;
 
 }  // namespace axg::cuda

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a kernel of a batch is launched, and how it waits for the one before it. Where the device can
-// (compute capability 9.0), a kernel is set up while the one before it still runs: each waits for
-// that one first of all, so nothing is read before it is written.
+// Launches a kernel of a batch, and lets it wait for the kernel before it. If the device allows it
+// (compute capability 9.0), a kernel is set up while the one before it still runs. Each kernel
+// first waits for the one before it, so it never reads data before they are written.
 #pragma once
 
 #include <cuda_runtime.h>
@@ -10,8 +10,8 @@
 
 namespace axg::cuda {
 
-/// First statement of every kernel of a batch, by every thread: the next kernel may be set up, and
-/// what the kernels before this one wrote is there.
+/// First statement of every kernel of a batch, in every thread: allows the setup of the next kernel
+/// and waits until the writes of all kernels before this one are visible.
 __device__ __forceinline__ void wait_for_kernel_before() {
 #if __CUDA_ARCH__ >= 900
     cudaTriggerProgrammaticLaunchCompletion();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Clearance: pairs of leaves, a block a pair. Every pair of triangles whose boxes may be nearer
-// than the bound gets its certified distance in float; what that leaves below the bound is a
-// candidate.
+// Clearance: pairs of leaves, one block per pair. Computes the certified distance in float of every
+// pair of triangles whose boxes may be nearer than the bound. A pair whose distance is below the
+// bound is a candidate.
 #include "cuda/engine/device_traversal.cuh"
 #include "cuda/engine/kernels.hpp"
 #include "cuda/engine/launch_kernel.cuh"
@@ -43,8 +43,8 @@ __device__ void move_leaves(const PreparedQuery& q, const TreeNode& a, const Tre
     }
 }
 
-/// Pairs of triangles whose boxes' bound is below `bound`, into the tile: a lane a triangle of a,
-/// the triangles of b dealt out to the warps. The bounds are those of nearest_triangles
+/// Stores in the tile the pairs of triangles whose boxes' bound is below `bound`: one lane per
+/// triangle of a; the warps share the triangles of b. The bounds are those of nearest_triangles
 /// (core/collision/traverse_clearance.inl).
 __device__ void gather(const PreparedQuery& q, const PairEntry& at, double bound, Tile& tile) {
     const TreeNode& a = q.a.nodes[at.a];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The first device, and whether it can be relied on.
+// Opens the first device and checks that it can run batches.
 #include "cuda/engine/engine_parts.hpp"
 
 namespace axg::cuda {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Opens the pairs of nodes of one tree level, a block a pair: children of each against the other's
-// own box, then every child left against every child left, a warp a child of a (a row), a lane a
-// child of b. What all rows found is charged, counted and listed at once: a chain of atomics costs
-// more than a row. The same rules as core/collision/traverse.inl, so the same pairs are found.
+// Opens the pairs of nodes of one tree level, one block per pair. Tests the children of each node
+// against the other's own box, then the remaining children against each other: a warp per child of
+// a (a row), a lane per child of b. Charges, counts and lists the pairs of all rows at once: a
+// chain of atomics costs more than a row. Same rules and pairs as core/collision/traverse.inl.
 #include "cuda/engine/device_traversal.cuh"
 #include "cuda/engine/kernels.hpp"
 #include "cuda/engine/launch_kernel.cuh"
@@ -12,15 +12,15 @@ namespace {
 
 constexpr unsigned kWarps = 4, kThreads = kWarps * kWarp, kBlocksPerMultiprocessor = 8;
 
-/// A child of a, as all lanes of its row read it.
+/// Data of a child of a that all lanes of its row read.
 struct alignas(16) Row {
-    Moved moved;               // its box, as a has it
+    Moved moved;               // its box in a, moved
     std::uint32_t leaf, more;  // of its node
-    // Of a leaf: its centre, where that gets to, and where exactly less that.
+    // Only for a leaf: its centre, the moved centre, and the exact moved centre less that.
     float centre[3], origin[3], shift[3];
 };
 
-/// What the rows of an opened pair have in common, and what they found.
+/// Shared input of the rows of an opened pair, and the pairs that they found.
 struct Rows {
     Row of[kNodeWidth];                  // by child of a
     std::uint8_t child[kNodeWidth];      // of a, by row
@@ -34,13 +34,13 @@ struct Rows {
 
 struct Shared {
     std::uint32_t bits_a, bits_b;
-    std::uint32_t rows[2];  // of the batch, as far as this block knows; in turns
-    PairEntry next[kWarp];  // this block's, as many as are read at once
+    std::uint32_t rows[2];  // the batch's rows last read by this block; used alternately
+    PairEntry next[kWarp];  // this block's next pairs, read together
     float low_a[kNodeWidth], low_b[kNodeWidth];
     Rows both;
 };
 
-/// charged_rows and charged_leaves, of what is kept of the nodes.
+/// charged_rows and charged_leaves, computed from the stored `more` of the nodes.
 AXG_HD constexpr std::uint32_t charge_of_row(std::uint32_t more) {
     return 1 + more;
 }
@@ -63,8 +63,8 @@ struct Opened {
     const TreeNode& b;
 };
 
-/// Charges a warp's pairs to their group: `all` lanes', of which this one's are `leaves` or not.
-/// Returns those that its share holds: all pairs of leaves or none, and likewise of the others.
+/// Charges the pairs of the lanes in `all` to their group; `leaves`: this lane has two leaves.
+/// Returns the lanes that its share covers: all pairs of leaves or none, all other pairs or none.
 __device__ std::uint32_t charge_pairs(const DeviceBuffers& buffers, const PreparedQuery& q,
                                       const Opened& o, bool leaves, std::uint32_t all,
                                       std::uint32_t child_a, std::uint32_t child_b) {
@@ -74,7 +74,7 @@ __device__ std::uint32_t charge_pairs(const DeviceBuffers& buffers, const Prepar
         leaf_bits == 0
             ? 0
             : warp_sum(leaves ? charged_leaves(q.a.nodes[child_a], q.b.nodes[child_b]) : 0);
-    // A lane each, so that neither waits for the other.
+    // One lane per list, so that neither waits for the other.
     bool fits = true;
     if (lane_of_thread() == 0 && leaf_bits != 0) {
         fits = charge(group, kLeafPairsPlace, charged, loss_of_leaves(o.tree_level));
@@ -86,8 +86,8 @@ __device__ std::uint32_t charge_pairs(const DeviceBuffers& buffers, const Prepar
     return ((fitting & 1U) != 0 ? leaf_bits : 0) | ((fitting & 2U) != 0 ? other_bits : 0);
 }
 
-/// Puts the wanted lanes' pairs where they belong: two leaves to the leaves, others one level on.
-/// Called by whole warps.
+/// Lists this lane's pair if required: two leaves in the leaves, others in the next level. Called
+/// by whole warps.
 __device__ void append(const DeviceBuffers& buffers, const PreparedQuery& q, const Opened& o,
                        bool wanted, std::uint32_t child_a, std::uint32_t child_b, float low_mm) {
     const std::uint32_t all = ballot(wanted);
@@ -125,8 +125,8 @@ __device__ void append(const DeviceBuffers& buffers, const PreparedQuery& q, con
     }
 }
 
-/// Whether child `lane` of b is near the row's child of a: boxes along both bodies' axes, and where
-/// the child of a is a leaf also the tight box of its moved triangles.
+/// Whether child `lane` of b is near the row's child of a. Compares boxes along both bodies' axes
+/// and, if the child of a is a leaf, the tight box of its moved triangles.
 __device__ bool is_near_child(const PreparedQuery& q, const Row& row, const ChildBox& box,
                               bool wanted) {
     bool near = wanted && is_near<false>(q.c.a_in_b, row.moved, box);
@@ -138,12 +138,12 @@ __device__ bool is_near_child(const PreparedQuery& q, const Row& row, const Chil
     return near;
 }
 
-/// Adds to the batch's rows of boxes; the first thread gets what they come to.
+/// Adds to the batch's rows of boxes. Returns the sum to the first thread, 0 to the others.
 __device__ std::uint32_t count_rows(const DeviceBuffers& buffers, std::uint32_t more) {
     return threadIdx.x == 0 && more != 0 ? atomicAdd(&buffers.counters->box_rows, more) + more : 0;
 }
 
-/// What rows need of a child of each body, a lane a child.
+/// Stores the data of the children of each body that the rows need, one lane per child.
 __device__ void read_children_of_b(const PreparedQuery& q, const Opened& o, Rows& rows) {
     const unsigned lane = lane_of_thread();
     const bool is_child = lane < o.b.count;
@@ -176,8 +176,8 @@ __device__ void read_children_of_a(const PreparedQuery& q, const Opened& o, Rows
     }
 }
 
-/// Children of each against the other's own box, a warp the children of b and another those of a;
-/// and what the rows need of them.
+/// Tests the children of each node against the other's own box: warp 0 those of b, warp 1 those of
+/// a. Two more warps store the data of the children that the rows need.
 __device__ void look_at_children(const PreparedQuery& q, const Opened& o, Shared& shared) {
     const unsigned lane = lane_of_thread(), warp = threadIdx.x / kWarp;
     Rows& rows = shared.both;
@@ -202,7 +202,7 @@ __device__ void look_at_children(const PreparedQuery& q, const Opened& o, Shared
     }
 }
 
-/// This warp's rows. Whether any of them found a pair.
+/// Tests this warp's rows. Returns whether any of them found a pair.
 __device__ bool test_rows(const DeviceBuffers& buffers, const PreparedQuery& q, const Opened& o,
                           unsigned row_count, std::uint32_t bits_b, Rows& rows) {
     const unsigned lane = lane_of_thread(), warp = threadIdx.x / kWarp;
@@ -229,15 +229,15 @@ __device__ bool test_rows(const DeviceBuffers& buffers, const PreparedQuery& q, 
     return found != 0;
 }
 
-/// Pairs of leaves among what row n found.
+/// Pairs of leaves among the pairs that row n found.
 __device__ __forceinline__ std::uint32_t leaves_in(const Rows& rows, unsigned n,
                                                    std::uint32_t bits) {
     return rows.of[rows.child[n]].leaf != kNoLeaf ? bits & rows.leaves_b : 0;
 }
 
-/// Charges and counts all rows, and takes places for the pairs that they found: of a group all
-/// pairs of leaves or none, and likewise of the others. Called by the first warp, a lane a row.
-/// Returns the batch's rows of boxes so far, to the first thread.
+/// Charges and counts all rows, and reserves places for the pairs that they found: in a group all
+/// pairs of leaves or none, and all other pairs or none. Called by the first warp, one lane per
+/// row. Returns the batch's rows of boxes so far to the first thread.
 __device__ std::uint32_t list_rows(const DeviceBuffers& buffers, const PreparedQuery& q,
                                    const Opened& o, unsigned row_count, Rows& rows) {
     const unsigned lane = lane_of_thread();
@@ -245,7 +245,7 @@ __device__ std::uint32_t list_rows(const DeviceBuffers& buffers, const PreparedQ
     const std::uint32_t bits = is_row ? rows.near[lane] : 0;
     const std::uint32_t leaf_bits = is_row ? leaves_in(rows, lane, bits) : 0;
     const std::uint32_t other_bits = bits & ~leaf_bits;
-    // Both sums in one: neither passes kLeafPairs.
+    // Both sums in one word: neither exceeds kLeafPairs.
     static_assert(kLeafPairs < 1U << 16U);
     const auto own = static_cast<std::uint32_t>(__popc(leaf_bits)) |
                      static_cast<std::uint32_t>(__popc(other_bits)) << 16U;
@@ -258,7 +258,7 @@ __device__ std::uint32_t list_rows(const DeviceBuffers& buffers, const PreparedQ
     }
     const std::uint32_t all = __shfl_sync(kAllLanes, sum, kWarp - 1);
     const std::uint32_t leaves = all & 0xffffU, others = all >> 16U;
-    // A lane each, so that none waits for another.
+    // One lane per atomic, so that none waits for another.
     Counters& counters = *buffers.counters;
     std::uint32_t rows_before = 0;
     bool fits = true;
@@ -305,7 +305,7 @@ __device__ std::uint32_t list_rows(const DeviceBuffers& buffers, const PreparedQ
     return rows_before + row_count;
 }
 
-/// Stores what this warp's rows found and list_rows has places for.
+/// Stores the pairs of this warp's rows for which list_rows reserved places.
 __device__ void store_rows(const DeviceBuffers& buffers, const Opened& o, unsigned row_count,
                            std::uint32_t leaf_budget, std::uint32_t level_budget,
                            const Rows& rows) {
@@ -327,8 +327,8 @@ __device__ void store_rows(const DeviceBuffers& buffers, const Opened& o, unsign
     }
 }
 
-/// Returns the batch's rows of boxes so far, to the first thread.
-/// @param lost  whether this thread saw the group lost; others may not have
+/// Opens two inner nodes. Returns the batch's rows of boxes so far to the first thread.
+/// @param lost  whether this thread saw the group lost; other threads may have read another value
 __device__ std::uint32_t open_both(const DeviceBuffers& buffers, const PreparedQuery& q,
                                    const Opened& o, bool lost, Shared& shared) {
     look_at_children(q, o, shared);
@@ -355,7 +355,7 @@ __device__ std::uint32_t open_both(const DeviceBuffers& buffers, const PreparedQ
     return so_far;
 }
 
-/// Opens b alone (a is a leaf) or a alone (b is a leaf). The first warp does it.
+/// Opens only b (a is a leaf) or only a (b is a leaf). Only the first warp works.
 __device__ std::uint32_t open_one(const DeviceBuffers& buffers, const PreparedQuery& q,
                                   const Opened& o, bool measures, double bound) {
     if (threadIdx.x >= kWarp) {
@@ -433,11 +433,11 @@ __device__ std::uint32_t open(const DeviceBuffers& buffers, const PairEntry& at,
     if (!leaf_a && !leaf_b && !measures) {
         return open_both(buffers, q, o, lost, shared);
     }
-    // Other blocks lose groups meanwhile: all threads of this one have to see the same.
+    // Other blocks may lose the group meanwhile: all threads of this block have to agree.
     if (buffers.limits.is_stage && __syncthreads_or(lost ? 1 : 0) != 0) {
         return 0;
     }
-    if (leaf_a && leaf_b) {  // two roots: pairs found further down go to the leaves at once
+    if (leaf_a && leaf_b) {  // two roots: deeper pairs of leaves are listed when they are found
         if (threadIdx.x == 0 && (!buffers.limits.is_stage ||
                                  charge(buffers.groups[q.group], kLeafPairsPlace,
                                         charged_leaves(o.a, o.b), loss_of_leaves(tree_level)))) {
@@ -454,8 +454,8 @@ __device__ std::uint32_t open(const DeviceBuffers& buffers, const PairEntry& at,
     return open_nearest(buffers, q, o, bound, shared);
 }
 
-/// The next pairs of this block, from the i-th of the level on: a lane a pair, so that only one in
-/// many waits for the memory. Called by whole blocks, when nobody reads the last ones any more.
+/// Reads the next pairs of this block, from the i-th of the level on: one lane per pair, so that
+/// the block waits once for 32 pairs. Called by whole blocks, when no thread reads the last pairs.
 __device__ void read_pairs(const DeviceBuffers& b, std::uint32_t i, std::uint32_t count,
                            std::uint32_t tree_level, Shared& shared) {
     const std::uint32_t own = i + threadIdx.x * gridDim.x;
@@ -478,7 +478,7 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
             read_pairs(b, i, count, tree_level, shared);
         }
         const PairEntry& at = shared.next[handled % kWarp];
-        // Rows beyond the limit: the whole batch is not proven, whatever is left out here.
+        // Rows beyond the limit: the whole batch is not proven, so this may skip pairs.
         if (at.query != kNoQuery && rows <= budget.box_rows) {
             rows = max(rows, open(b, at, tree_level, shared));
         }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A part of a large GPU as a stand-in for a small one: a green context of N multiprocessors. The
-// driver's entry points are looked up at run time, so nothing links against the driver.
+// A partition of a large GPU replaces a small one: a green context of N multiprocessors. Looks the
+// driver's entry points up at run time, so no binary links against the driver.
 #include <cuda.h>
 
 #include "cuda/engine/engine_parts.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Clearance: which pair of triangles set it. Of equal ones that with the lowest ids, so that the
-// result does not depend on the order of work.
+// Clearance: finds the pair of triangles that set it. Of equal pairs it is the one with the lowest
+// ids, so that the result does not depend on the order of work.
 #include "cuda/engine/device_traversal.cuh"
 #include "cuda/engine/kernels.hpp"
 #include "cuda/engine/launch_kernel.cuh"

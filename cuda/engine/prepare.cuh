@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the first kernel of a batch does whoever poses its queries: their constants, zeroed
-// counters, one pair of roots a query, and beside it blocks that sum up a slice of the trees.
+// The part that both first kernels of a batch share: computes the constants of the queries, zeroes
+// counters and lists one pair of roots per query. Further blocks sum up a slice of the trees.
 #pragma once
 
 #include "cuda/engine/device_traversal.cuh"
@@ -13,11 +13,11 @@ namespace {
 constexpr unsigned kThreads = 64;
 static_assert(kThreads == kSumThreads);
 
-/// Whether the engine can run it at all; if so, `prepared` holds what it takes.
+/// Whether the engine can run the query; if so, fills `prepared`.
 __device__ bool prepare(const DeviceBuffers& b, const Query& q, PreparedQuery& prepared) {
     prepared.group = q.group;
     if (b.limits.is_stage && q.kind == QueryKind::clearance) {
-        return false;  // its work is ordered by what was found
+        return false;  // the order of its work depends on its findings
     }
     if (q.mesh_a >= b.limits.meshes || q.mesh_b >= b.limits.meshes || !usable(q)) {
         return false;
@@ -38,14 +38,14 @@ __device__ bool prepare(const DeviceBuffers& b, const Query& q, PreparedQuery& p
     return true;
 }
 
-/// Zeroes what the query comes to, and lists its two roots.
-/// @param is_far  without a look
+/// Zeroes the tally of the query and lists its two roots.
+/// @param is_far  proven without any work
 __device__ void start(const DeviceBuffers& b, std::uint32_t index, const Query& q, bool is_far,
                       std::uint32_t sequence) {
     Tally tally{};
     tally.sequence = sequence;
     tally.refused = prepare(b, q, b.prepared[index]) ? 0 : 1;
-    // Nothing is nearer than 0 mm: a clearance up to there is known without a look.
+    // No distance is below 0 mm: a clearance up to 0 mm needs no work.
     const bool has_work =
         tally.refused == 0 && !is_far && (q.kind != QueryKind::clearance || q.r_mm > 0);
     tally.pairs_at[0] = has_work ? 1 : 0;
@@ -77,7 +77,7 @@ __device__ void sum_trees(const TreeSums& sums, std::uint32_t block, std::uint32
     }
 }
 
-/// Shares of a stage's groups, from pinned memory: the first ones before it is known how many.
+/// Copies the shares of a stage's groups from pinned memory; loads the first before their count.
 __device__ void copy_groups(const DeviceBuffers& b) {
     constexpr std::uint32_t kWords = sizeof(GroupSums) / sizeof(uint4);
     const uint4* const from = reinterpret_cast<const uint4*>(b.groups_in);
@@ -92,7 +92,7 @@ __device__ void copy_groups(const DeviceBuffers& b) {
     }
 }
 
-/// By one thread of the batch.
+/// Called by one thread of the batch.
 __device__ void start_counters(const DeviceBuffers& b, const BatchHead& head) {
     const DeviceLimits& limits = b.limits;
     Counters counters{};
@@ -105,7 +105,7 @@ __device__ void start_counters(const DeviceBuffers& b, const BatchHead& head) {
     *b.counters = counters;
 }
 
-/// Whether this block is one behind the `own` first ones, and did its work: the sums, the groups.
+/// Whether this block follows the `own` first ones. If so, it does the sums or the groups.
 __device__ bool did_other_work(const DeviceBuffers& b, unsigned own) {
     if (blockIdx.x < own) {
         return false;

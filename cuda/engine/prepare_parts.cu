@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// First kernel of a batch about parts of boxes: the numbers that they have in common from pinned
-// memory, and each part's query from those. Queries of other kinds come behind the parts.
+// First kernel of a batch that begins with parts of boxes: reads their common numbers from pinned
+// memory and computes each part's query from them. Other queries follow the parts.
 #include <cstddef>
 
 #include "cuda/engine/prepare.cuh"
@@ -10,7 +10,7 @@ namespace {
 
 constexpr unsigned kParts = kPartsOfBlock;  // each is posed by a thread of either warp
 static_assert(kParts == kWarp && kThreads == 2 * kWarp);
-// Read before it is known how many there are: the bus takes a microsecond, whatever is read.
+// Loaded before their counts: each read over the bus costs a microsecond, whatever its size.
 constexpr std::uint32_t kRootsAtOnce = 4, kQueriesAtOnce = 2;
 constexpr unsigned kTreeWords = sizeof(QueryTree) / sizeof(uint4);
 constexpr unsigned kRootWords = sizeof(TreeRoot) / sizeof(uint4);
@@ -22,11 +22,11 @@ static_assert(offsetof(PartBlock, roots) == sizeof(QueryTree));
 struct Shared {
     uint4 trees[kRootsOfBlock * kTreeWords];
     uint4 roots[kRootsOfBlock * kRootWords];
-    uint4 queries[kQueryWords];  // the first ones behind the parts
-    double left[12][kParts];     // the numbers of a pose each
+    uint4 queries[kQueryWords];  // the first ones after the parts
+    double left[12][kParts];     // the twelve numbers of the left half of each pose
 };
 
-/// This block's first tree and first roots: all loads at once.
+/// Loads this block's first tree and first roots, all at once.
 __device__ void load_first(const DeviceBuffers& b, Shared& shared) {
     const uint4* const from = reinterpret_cast<const uint4*>(
         b.part_blocks + min(blockIdx.x, part_blocks(b.limits.queries) - 1));
@@ -43,7 +43,7 @@ __device__ void load_first(const DeviceBuffers& b, Shared& shared) {
     }
 }
 
-/// The other roots of this block.
+/// Loads the other roots of this block.
 __device__ void load_roots(const DeviceBuffers& b, std::uint32_t roots, Shared& shared) {
     const uint4* const from = reinterpret_cast<const uint4*>(b.part_blocks[blockIdx.x].roots);
     const unsigned first = kRootsAtOnce * kRootWords + threadIdx.x;
@@ -52,7 +52,7 @@ __device__ void load_roots(const DeviceBuffers& b, std::uint32_t roots, Shared& 
     }
 }
 
-/// Trees from this one on, as many as a block can have.
+/// Loads trees from the `first` one on, as many as a block can need.
 __device__ void load_trees(const DeviceBuffers& b, std::uint32_t first, Shared& shared) {
     constexpr unsigned kWords = kRootsOfBlock * kTreeWords, kAtOnce = 8;
     const uint4* const from = reinterpret_cast<const uint4*>(b.query_trees + first);
@@ -69,7 +69,7 @@ __device__ void load_trees(const DeviceBuffers& b, std::uint32_t first, Shared& 
     }
 }
 
-/// The first ones behind the parts, which this block may have.
+/// Loads the first queries after the parts, which this block may process.
 __device__ void load_queries(const DeviceBuffers& b, Shared& shared) {
     static_assert(kQueryWords <= kThreads);
     if (threadIdx.x < kQueryWords) {
@@ -77,8 +77,8 @@ __device__ void load_queries(const DeviceBuffers& b, Shared& shared) {
     }
 }
 
-/// A pose is a product of two halves: the second warp makes the left ones, and the first one the
-/// right ones, and starts the queries. Called by whole blocks.
+/// A pose is a product of two halves: the second warp computes the left ones, the first warp
+/// computes the right ones and starts the queries. Called by whole blocks.
 /// @param is_part  this thread has one
 __device__ void pose_and_start(const DeviceBuffers& b, const Part& part, bool is_part,
                                std::uint32_t index, std::uint32_t sequence, Shared& shared) {
@@ -116,7 +116,7 @@ __device__ void pose_and_start(const DeviceBuffers& b, const Part& part, bool is
     }
 }
 
-/// This block's parts. Called by whole blocks, once the first trees and roots are there.
+/// Starts this block's parts. Called by whole blocks, after the first tree and roots are loaded.
 __device__ void start_parts(const DeviceBuffers& b, const BatchHead& head, std::uint32_t first,
                             std::uint32_t parts, Shared& shared) {
     const TreeRoot* const here = reinterpret_cast<const TreeRoot*>(shared.roots);
@@ -129,7 +129,7 @@ __device__ void start_parts(const DeviceBuffers& b, const BatchHead& head, std::
         __syncthreads();
     }
     std::uint32_t first_tree = min(std::uint32_t{here[0].tree}, kQueryTreesMax - 1);
-    if (here[roots - 1].tree != here[0].tree) {  // else the one that it is is there
+    if (here[roots - 1].tree != here[0].tree) {  // else their only tree is loaded
         first_tree = min(first_tree, kQueryTreesMax - kRootsOfBlock);
         __syncthreads();
         load_trees(b, first_tree, shared);

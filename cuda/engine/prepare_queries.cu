@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// First kernel of a batch: queries from pinned memory.
+// First kernel of a batch: reads queries from pinned memory.
 #include "cuda/engine/prepare.cuh"
 
 namespace axg::cuda {
@@ -7,7 +7,7 @@ namespace {
 
 static_assert(sizeof(Query) % sizeof(uint4) == 0);
 
-/// A thread a query.
+/// Blocks with one thread per query.
 [[nodiscard]] AXG_HD unsigned query_blocks(const DeviceLimits& limits) {
     return (limits.queries + kThreads - 1) / kThreads;
 }
@@ -15,7 +15,7 @@ static_assert(sizeof(Query) % sizeof(uint4) == 0);
 __global__ void __launch_bounds__(kThreads, 8)
     prepare_queries_kernel(const __grid_constant__ DeviceBuffers b) {
     wait_for_kernel_before();
-    // Through shared memory, so that the bus sees whole lines.
+    // Through shared memory, so that the bus transfers whole lines.
     constexpr unsigned kWords = kThreads * sizeof(Query) / sizeof(uint4);
     __shared__ uint4 words[kWords];
     if (did_other_work(b, query_blocks(b.limits))) {
@@ -25,7 +25,7 @@ __global__ void __launch_bounds__(kThreads, 8)
     const uint4* const from = reinterpret_cast<const uint4*>(b.queries + first);
     const std::uint32_t room = min(kThreads, b.limits.queries - first);
     constexpr unsigned kEach = kWords / kThreads;
-    uint4 loaded[kEach];  // all on their way at once: the bus takes a microsecond for each
+    uint4 loaded[kEach];  // loads run in parallel: each needs a microsecond on the bus
 #pragma unroll
     for (unsigned i = 0; i < kEach; ++i) {
         loaded[i] = from[min(i * kThreads + threadIdx.x, room * kEach - 1)];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs of triangles that float could not tell apart, tested again in double of the un-rounded
-// vertices, a warp a pair; what stays undecided counts as touching.
+// Tests pairs of triangles that float could not decide again, in double of the un-rounded vertices,
+// one warp per pair. A pair that remains undecided counts as touching.
 #include "cuda/engine/kernels.hpp"
 #include "cuda/engine/launch_kernel.cuh"
 #include "cuda/engine/warp_double.cuh"
@@ -27,8 +27,8 @@ __device__ void recheck(const DeviceBuffers& b, std::uint32_t query, std::uint32
                         PairVectors& vectors) {
     const PreparedQuery& q = b.prepared[query];
     Tally& tally = b.tallies[query];
-    // One that touches is all that `farther` needs. The result is the same without this way out,
-    // and so is the bound of the work.
+    // One touching pair settles `farther`. The result and the bound of the work are the same
+    // without this early return.
     const bool is_settled =
         q.kind == QueryKind::farther &&
         ballot(*static_cast<volatile std::uint32_t*>(&tally.touching) != 0) != 0;

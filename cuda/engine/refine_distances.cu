@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Clearance: certified distances in double, a warp a pair, in two steps. First of the candidates
-// that float calls nearest; then of every other candidate whose bound in float is below what the
-// first step found. The least value of all pairs is the clearance, and no pair that was left out
+// Clearance: computes certified distances in double, one warp per pair, in two steps: first of the
+// candidates nearest in float, then of every other candidate whose bound in float is below the
+// least distance of the first step. The least value of all pairs is the clearance; no skipped pair
 // could be below it.
 #include "cuda/engine/kernels.hpp"
 #include "cuda/engine/launch_kernel.cuh"
@@ -11,7 +11,7 @@ namespace axg::cuda {
 namespace {
 
 constexpr unsigned kWarps = 4, kThreads = kWarps * kWarp, kBlocksPerMultiprocessor = 3;
-// The clearance of a pair that is proven apart and nothing more, as in
+// The clearance of a pair that is proven apart, but by no distance; as in
 // core/collision/traverse_clearance.inl.
 constexpr double kApart = 0x1p-1000;
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Clearance: an upper bound of each distance before anything is listed. A block a query goes
-// down to the pair of leaves that its boxes call nearest; the nearest edges of their triangles are
-// at a distance that the surfaces can not exceed. Whatever is farther is never listed. The bound is
-// fixed before the descent begins, so what is listed does not depend on the order of work.
+// Clearance: computes an upper bound of each distance before any pair is listed. One block per
+// query descends to the pair of leaves whose boxes are nearest. The distance of the surfaces cannot
+// exceed that of the nearest edges of their triangles, so farther pairs are never listed. The bound
+// is fixed before the traversal begins, so the lists do not depend on the order of work.
 #include "cuda/engine/device_traversal.cuh"
 #include "cuda/engine/kernels.hpp"
 #include "cuda/engine/launch_kernel.cuh"
@@ -18,8 +18,8 @@ struct Shared {
     float squares[kWarps];
 };
 
-/// Bounds sort as their bits do; of equal ones (most boxes near contact overlap) the pair whose
-/// centres are nearest wins.
+/// Bounds sort as their bits do. If bounds are equal (most boxes near contact overlap), the key of
+/// the pair with the nearest centres is least.
 __device__ unsigned long long key_of(float low, const Moved& m, const ChildBox& box, unsigned i,
                                      unsigned j) {
     const float d[3] = {m.c[0] - box.c[0], m.c[1] - box.c[1], m.c[2] - box.c[2]};
@@ -86,8 +86,8 @@ __device__ float edge_square(const sat::TrianglePair<float>& p) {
     return least;
 }
 
-/// An upper bound of the distance of two leaves. The ends of each segment lie on the triangles but
-/// for roundings, which the frame's slack covers many times (docs/theory/accuracy.md, section 5).
+/// An upper bound of the distance of two leaves. Segments end on the triangles except for
+/// roundings, which the frame's slack covers many times (docs/theory/accuracy.md, section 5).
 __device__ double leaf_bound(const PreparedQuery& q, const PairEntry& at, Shared& shared) {
     const TreeNode& a = q.a.nodes[at.a];
     const TreeNode& b = q.b.nodes[at.b];

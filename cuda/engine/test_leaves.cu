@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs of leaves as every engine takes them, unless it is made with another kernel.
+// The kernel for pairs of leaves that an engine uses unless its options name another one.
 #include "cuda/engine/test_leaves.cuh"
 
 namespace axg::cuda {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs of leaves, a warp a pair: moves both leaves once, drops the triangles whose tight boxes are
-// apart and gathers what is left. Then the warps of a block share what its four pairs of leaves
-// left, 32 pairs of triangles at a time: the certified test, a thread a pair. What float cannot
-// settle goes to the query's list for the recheck, unless the query is of float only. Where the
-// axis data of a triangle come from, and whether axis loops are written out, changes no bit.
+// Pairs of leaves, one warp per pair: moves both leaves once, drops the triangles whose tight boxes
+// are apart and gathers the remaining pairs of triangles. Then the warps of a block share the pairs
+// of its four pairs of leaves, 32 at a time: the certified test, one thread per pair. A pair that
+// float cannot decide is listed for the recheck, unless the query is float-only. The source of the
+// axis data of a triangle, and whether axis loops are unrolled, changes no bit.
 #pragma once
 
 #if __has_include(<nv/target>)
@@ -31,9 +31,9 @@ struct Tile {
     float d;                                   // of scale_of
     std::uint16_t pairs[kLeafPairs];           // place in a, place in b: five bits each
     PairEntry at;
-    std::uint32_t count;    // of the pairs; 0 where they are not to be tested
+    std::uint32_t count;    // of the pairs; 0 if they are not to be tested
     std::uint32_t handled;  // pairs of leaves
-    std::uint32_t rows;     // of the batch, as far as this warp knows
+    std::uint32_t rows;     // of the batch, as last read by this warp
 };
 
 /// Axis data of both leaves of a tile, one array a number: two edges, normal, squares, area, reach.
@@ -42,7 +42,7 @@ struct AxisTile {
     float a[kAxisNumbers][kNodeWidth], b[kAxisNumbers][kNodeWidth];
 };
 
-/// The pair of leaves that a warp takes next, on its way while it tests this one.
+/// A warp's next pair of leaves, which loads while the warp tests this one.
 struct NextPair {
     TreeNode node_a, node_b;
     TreeLeaf leaf_a, leaf_b;
@@ -57,10 +57,10 @@ struct Shared {
     alignas(kPrefetched ? alignof(NextPair)
                         : 16) std::conditional_t<kPrefetched, NextPair[kWarps], std::byte> next;
     std::uint32_t count;  // pairs of leaves of the batch
-    bool is_lost;         // the batch, as far as this block knows
+    bool is_lost;         // the batch exceeded its rows, as last seen by this block
 };
 
-/// Two leaves of one query; `origin` is what both are moved by.
+/// Two leaves of one query; `origin` is subtracted from both.
 struct Leaves {
     const TreeNode& a;
     const TreeNode& b;
@@ -69,16 +69,16 @@ struct Leaves {
     float origin[3];
 };
 
-/// One lane's triangle of either leaf: its own box, and that from its moved vertices.
+/// One lane's triangle of each leaf: the box of its moved vertices, and for a also its own box.
 struct ClippedLeaf {
     TightBox tight_a, tight_b;
     ChildBox box_a;
-    bool near_a = false;       // as far as boxes of whole leaves tell
-    std::uint32_t bits_b = 0;  // likewise, all lanes'
+    bool near_a = false;       // not apart from the tight box of the whole leaf of b
+    std::uint32_t bits_b = 0;  // triangles of b not apart from that of a, all lanes'
 };
 
-/// Moves both leaves into the tile; what boxes of whole leaves leave of them. Called by whole
-/// warps.
+/// Moves both leaves into the tile. Returns the triangles that are not apart from the tight box of
+/// the other leaf. Called by whole warps.
 __device__ ClippedLeaf move_leaves(const PreparedQuery& q, const Leaves& l, Tile& tile) {
     const unsigned lane = lane_of_thread();
     const float slack = q.c.tight_slack, none[3] = {0, 0, 0};
@@ -114,8 +114,8 @@ __device__ __forceinline__ float from_lane(float value, unsigned lane) {
     return __shfl_sync(kAllLanes, value, static_cast<int>(lane));
 }
 
-/// Pairs of triangles whose tight boxes are not proven apart, into tile.pairs: a lane a triangle of
-/// a, the triangles of b in turn. Returns how many.
+/// Stores in tile.pairs the pairs of triangles whose tight boxes are not proven apart: one lane per
+/// triangle of a, the triangles of b in turn. Returns their number.
 __device__ std::uint32_t clip(const PreparedQuery& q, const Leaves& l, const ClippedLeaf& c,
                               Tile& tile) {
     const unsigned lane = lane_of_thread();
@@ -141,8 +141,8 @@ __device__ std::uint32_t clip(const PreparedQuery& q, const Leaves& l, const Cli
     return count;
 }
 
-/// Counts what was found. Whether it may be tested: neither the query is lost, nor its group, nor
-/// the batch.
+/// Counts the pairs found. Returns whether they may be tested: neither the query, nor its group,
+/// nor the batch exceeds its limit.
 __device__ bool fits_budget(const DeviceBuffers& buffers, std::uint32_t query, std::uint32_t count,
                             std::uint32_t group) {
     std::uint32_t before = 0;
@@ -161,7 +161,7 @@ __device__ bool fits_budget(const DeviceBuffers& buffers, std::uint32_t query, s
            __shfl_sync(kAllLanes, before, 1) + count <= buffers.counters->budget.triangle_pairs;
 }
 
-/// Axis data of one triangle to a column, or back.
+/// Stores the axis data of one triangle in a column, or loads them from it.
 __device__ __forceinline__ void store_axes(const float (&v)[9][kNodeWidth], unsigned place,
                                            float (&to)[kAxisNumbers][kNodeWidth]) {
     sat::V3<float> corner[3];
@@ -189,7 +189,7 @@ __device__ __forceinline__ sat::TriangleAxes<float> load_axes(
             x[13]};
 }
 
-/// Starts to copy whole lines of 16 bytes, all lanes together.
+/// Starts a copy of whole lines of 16 bytes by all lanes of a warp.
 __device__ __forceinline__ void start_copy(void* to, const void* from, unsigned bytes) {
     for (unsigned at = lane_of_thread() * 16; at < bytes; at += kWarp * 16) {
         char* const line = static_cast<char*>(to) + at;
@@ -220,9 +220,9 @@ __device__ void prefetch(const DeviceBuffers& b, std::uint32_t i, std::uint32_t 
 #endif
 }
 
-/// One pair of leaves, up to the pairs of triangles that are left of it. Called by whole warps;
-/// the first lane gets the batch's rows of boxes so far.
-/// @param next  the pair, where it was prefetched; else null
+/// Gathers the pairs of triangles of one pair of leaves. Called by whole warps; returns the batch's
+/// rows of boxes so far to the first lane.
+/// @param next  the pair if it was prefetched, else null
 __device__ std::uint32_t gather(const DeviceBuffers& buffers, Tile& tile, const NextPair* next) {
     const PreparedQuery& q = buffers.prepared[tile.at.query];
     const TreeNode& a = next != nullptr ? next->node_a : q.a.nodes[tile.at.a];
@@ -249,7 +249,7 @@ __device__ std::uint32_t gather(const DeviceBuffers& buffers, Tile& tile, const 
     return rows;
 }
 
-/// Vertices in the lane whose axis loops are written out, or left as loops.
+/// Vertices in a lane type: its axis loops are unrolled (float) or loops (lanes::RolledFloat).
 template <class Lane>
 struct LaneVertices {
     sat::V3<Lane> a[3], b[3];
@@ -264,7 +264,7 @@ __device__ __forceinline__ LaneVertices<Lane> in_lane(const Vertices& v) {
     return out;
 }
 
-/// Whether they are certified apart. `edges_square` is set where they are not.
+/// Whether the triangles are certified apart. Sets `edges_square` if they are not.
 template <bool kMargin, class Lane>
 __device__ __forceinline__ bool test_pair(const sat::PairLimits<Lane>& limits,
                                           const LaneVertices<Lane>& v,
@@ -303,8 +303,8 @@ __device__ __forceinline__ void test(const DeviceBuffers& buffers, const Tile& t
     if (apart) {
         return;
     }
-    // Which query and which triangles are read anew: in registers over the whole test they are
-    // too many for compute capability 11.0.
+    // Reads again which query and which triangles: in registers during the whole test they are too
+    // many for compute capability 11.0.
     const PreparedQuery& again =
         buffers.prepared[*static_cast<const volatile std::uint32_t*>(&tile.at.query)];
     const unsigned places = *static_cast<const volatile std::uint16_t*>(&tile.pairs[i]);
@@ -313,13 +313,13 @@ __device__ __forceinline__ void test(const DeviceBuffers& buffers, const Tile& t
                                                     edges_square, Lane{again.near_mm});
     const bool is_farther = again.kind == QueryKind::farther;
     if (buffers.limits.is_stage && !(again.is_float_only && is_farther)) {
-        // Also one that is certified within the margin: what the CPU tests again, up to the first
-        // that touches, is never more.
+        // Charges a pair certified within the margin too: the CPU rechecks pairs up to the first
+        // that touches, never more than are charged here.
         charge(buffers.groups[again.group], kRechecksPlace, 1, kLossOfRechecks);
     }
     if ((is_near || again.is_float_only) && is_farther) {
-        // Settled, whatever else is found; that all of this kernel's pairs are counted before
-        // anyone looks keeps the work independent of the order.
+        // The result is settled. Later kernels read it after this kernel has counted all pairs, so
+        // the work does not depend on the order.
         atomicOr(&buffers.tallies[tile.at.query].near, 1U);
         return;
     }
@@ -337,7 +337,7 @@ __device__ __forceinline__ void test(const DeviceBuffers& buffers, const Tile& t
     }
 }
 
-/// What the block's tiles hold, dealt out to its warps 32 at a time.
+/// Tests the pairs in the block's tiles; each warp tests 32 at a time.
 template <AxisData kData, class Lane>
 __device__ void test_rooms(const DeviceBuffers& buffers, const Shared<kData>& shared) {
     const unsigned warp = threadIdx.x / kWarp;
@@ -360,7 +360,7 @@ __device__ void test_rooms(const DeviceBuffers& buffers, const Shared<kData>& sh
     }
 }
 
-/// Whether this warp's pair of leaves, the i-th of the batch, is to be looked at. Counts it.
+/// Whether this warp's pair of leaves, the i-th of the batch, is to be tested. Counts it.
 __device__ bool take(const DeviceBuffers& b, std::uint32_t i, std::uint32_t count, Tile& tile) {
     if (i >= count) {
         return false;
@@ -373,13 +373,13 @@ __device__ bool take(const DeviceBuffers& b, std::uint32_t i, std::uint32_t coun
         tile.at = at;
         ++tile.handled;
     }
-    __syncwarp();  // the others read it, and a vote puts no order on memory
-    // Other warps lose groups meanwhile: all lanes of this one have to see the same.
+    __syncwarp();  // the other lanes read tile.at, and a vote does not order memory
+    // Other warps may lose the group meanwhile: all lanes of this warp have to agree.
     return ballot(is_lost(b, b.prepared[at.query], kLossOfClipping)) == 0 &&
            !is_over(b.tallies[at.query], kTreeLevelsMax - 1, b.limits.node_pairs);
 }
 
-/// This warp's pair of leaves into its tile, with the axis data of its triangles.
+/// Fills this warp's tile from its pair of leaves, and stores the axis data of the triangles.
 template <AxisData kData>
 __device__ void fill_tile(const DeviceBuffers& b, Shared<kData>& shared, unsigned warp) {
     Tile& tile = shared.tiles[warp];
@@ -419,13 +419,13 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
     if constexpr (Shared<kData>::kPrefetched) {
         prefetch(b, blockIdx.x + warp * gridDim.x, shared.count, shared.next[warp]);
     }
-    // One to every block before any block gets a second.
+    // Every block gets one pair before any block gets a second.
     for (std::uint32_t base = blockIdx.x; base < shared.count; base += kWarps * gridDim.x) {
         if (lane_of_thread() == 0) {
             tile.count = 0;
         }
         __syncthreads();
-        // Rows beyond the limit: the whole batch is not proven, whatever is left out here.
+        // Rows beyond the limit: the whole batch is not proven, so this may skip pairs.
         const bool is_lost = shared.is_lost;
         const std::uint32_t i = base + warp * gridDim.x;
         if constexpr (Shared<kData>::kPrefetched) {
@@ -438,7 +438,7 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
             fill_tile(b, shared, warp);
         }
         if constexpr (Shared<kData>::kPrefetched) {
-            __syncwarp();  // nobody reads this pair any more
+            __syncwarp();  // no lane reads this pair any more
             prefetch(b, i + kWarps * gridDim.x, shared.count, shared.next[warp]);
         }
         __syncthreads();
@@ -458,7 +458,7 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
 }  // namespace
 
 /// Launches the kernel over these axis data.
-/// @tparam Lane  float: axis loops written out; lanes::RolledFloat: left as loops
+/// @tparam Lane  float: axis loops unrolled; lanes::RolledFloat: loops
 template <AxisData kData, class Lane = float>
 cudaError_t launch_leaves(const DeviceBuffers& buffers, const Launch& launch) noexcept {
     const unsigned blocks = launch.multiprocessors * kBlocksPerMultiprocessor;

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// The test in double by a whole warp: an axis a lane, a feature a lane. One pair is what a cycle
-// waits for, so its latency counts and not its work. The same vectors as
-// core/collision/double_test.hpp tries and the same candidates as
-// core/collision/closest_direction.hpp, so the same results to the bit.
+// The test in double by a whole warp: one lane per axis or feature. A cycle waits for a single
+// pair, so its latency matters, not its work. Tries the same vectors as
+// core/collision/double_test.hpp and the same candidates as core/collision/closest_direction.hpp,
+// so the results are equal to the bit.
 #pragma once
 
 #include "cuda/engine/device_traversal.cuh"
 
 namespace axg::cuda {
 
-/// One warp's vectors, read by a lane's own index.
+/// One warp's vectors; each lane reads them by an index of its own.
 struct PairVectors {
     // Vertices of a, of b; edges of a, of b; normals of a, of b.
     sat::V3<double> at[14];
 };
 
-/// A pair and its vectors, known to every lane; `vectors` is the warp's own shared memory.
+/// A pair and its vectors, the same in every lane; `vectors` is the warp's own shared memory.
 struct WarpPair {
     sat::TrianglePair<double> p;
     sat::PairAxes<double> x;
@@ -56,8 +56,8 @@ __device__ __forceinline__ bool warp_separated(const WarpPair& w, double margin)
     return ballot(sat::separates<kMargin>(w.p, axis, margin)) != 0;
 }
 
-/// The closest direction: nine pairs of edges and six pairs of vertex and face, a lane each; of
-/// equal ones the first in the order of core/collision/closest_direction.hpp.
+/// The closest direction of nine pairs of edges and six pairs of vertex and face, one lane each.
+/// The order of core/collision/closest_direction.hpp decides between equal ones.
 __device__ __forceinline__ sat::V3<double> warp_closest(const WarpPair& w) {
     const unsigned lane = lane_of_thread();
     const sat::V3<double>* const v = w.vectors.at;
@@ -103,18 +103,18 @@ __device__ __forceinline__ bool warp_apart(const WarpPair& w, double margin) {
     return sat::separates<kMargin>(w.p, warp_closest(w), margin);
 }
 
-/// Deals the entries of all queries out to all warps of the grid, one at a time: `count_of` says
-/// how many a query has, `take` is called by whole warps. Queries whose entries, with those
-/// before them, are more than `budget` get none of theirs dealt; `note` hears once of each query
-/// with entries whether they were. Every thread of a block calls this; `counts` is shared memory of
-/// kBatchQueriesMax words.
+/// Deals the entries of all queries out to all warps of the grid, one at a time. `count_of` returns
+/// the number of a query's entries; whole warps call `take` for each entry. Skips a query with more
+/// entries than the queries dealt before it left of `budget`. One thread of the grid calls `note`
+/// once per query with entries: whether they were dealt. Every thread of a block calls this;
+/// `counts` is shared memory of kBatchQueriesMax words.
 template <class CountOf, class Note, class Take>
 __device__ __forceinline__ void deal(std::uint32_t queries, std::uint32_t budget,
                                      std::uint32_t* counts, const CountOf& count_of,
                                      const Note& note, const Take& take) {
     const unsigned warps = blockDim.x / kWarp, all_warps = gridDim.x * warps;
     const unsigned own = (threadIdx.x / kWarp) * gridDim.x + blockIdx.x;
-    std::uint32_t dealt = 0;  // entries of the queries before, in turns of all warps
+    std::uint32_t dealt = 0;  // entries of the queries before, modulo all warps
     const unsigned whole = (queries + kWarp - 1) / kWarp * kWarp;
     for (unsigned i = threadIdx.x; i < whole; i += blockDim.x) {
         counts[i] = i < queries ? count_of(i) : 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Last kernel of a batch: one result a query into pinned memory, each with the batch's number
-// and a check word, so that the host knows by each alone that it is whole. Far only where every
-// list was long enough and everything listed was handled: a kernel that did not run shows here.
+// Last kernel of a batch: writes one result per query to pinned memory, each with the batch's
+// number and a check word, so that the host can check each result by itself. A result is far only
+// if no list overflowed and every listed entry was handled: a kernel that did not run is detected.
 #include "cuda/engine/device_traversal.cuh"
 #include "cuda/engine/kernels.hpp"
 #include "cuda/engine/launch_kernel.cuh"
@@ -12,13 +12,13 @@ namespace {
 constexpr unsigned kThreads = 64;  // queries a block, and groups
 static_assert(kTreeLevelsMax <= kWarp, "a lane a tree level");
 
-/// Whether every pair of nodes that was listed was looked at, in trees that are as they were; and
-/// whether no budget was left for one, or for a pair of triangles.
+/// Whether every listed pair of nodes was handled, in unchanged trees; whether the budget of pairs
+/// of nodes, pairs of leaves or rows of boxes was exceeded; and that of pairs of triangles.
 struct BatchState {
     bool is_complete, is_over, is_over_triangles;
 };
 
-/// Called by whole warps, so that all loads are on their way at once.
+/// Called by whole warps, so that all loads run in parallel.
 __device__ BatchState state_of(const DeviceBuffers& b) {
     const Counters& counters = *b.counters;
     const BatchBudget& budget = counters.budget;
@@ -123,7 +123,7 @@ __device__ DeviceResult result_of(const DeviceBuffers& b, std::uint32_t index,
     return result;
 }
 
-/// What a group of a stage came to.
+/// The work of one group of a stage.
 __device__ DeviceGroupResult group_result_of(const GroupSums& group) {
     DeviceGroupResult result{};
     result.sequence = group.sequence;
@@ -147,7 +147,7 @@ __global__ void __launch_bounds__(kThreads)
     if (b.limits.is_stage && i < min(counters.groups, b.limits.queries)) {
         b.groups_out[i] = group_result_of(b.groups[i]);
     }
-    if (i == 0) {  // the next batch's; this kernel reads the other one
+    if (i == 0) {  // zeroes the next batch's sum; this kernel reads the other one
         b.sums.found[(counters.sequence + 1) % 2] = 0;
     }
 }

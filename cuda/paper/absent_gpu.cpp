@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a build without a CUDA compiler has in place of the paper's kernels: a create() that says
-// so.
+// Replaces the paper's kernels in a build without a CUDA compiler: create() reports that they are
+// absent.
 #include "core/base/assert.hpp"
 #include "cuda/paper/paper_gpu.hpp"
 
@@ -16,7 +16,7 @@ std::optional<Gpu> Gpu::create(const Scene&, unsigned, std::string& fault) {
     return std::nullopt;
 }
 
-// Nobody gets a Gpu from this build, so nobody can call what follows.
+// create() returns no Gpu in this build, so no caller can reach these functions.
 Gpu::Gpu(std::unique_ptr<Parts> parts) noexcept : parts_(std::move(parts)) {}
 Gpu::Gpu(Gpu&&) noexcept = default;
 Gpu::~Gpu() = default;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every pair of triangles of two bodies on one core of the processor: as the seed paper's CPU
-// program does it, and certified, with the widest lanes. For comparison only.
+// Tests every pair of triangles of two bodies on one core of the processor: like the seed paper's
+// CPU program, and certified with the widest lanes. For comparison only.
 #pragma once
 
 #include "core/collision/lane_kernels.hpp"
@@ -12,7 +12,7 @@ namespace axg::paper {
 /// @param pose  a's frame to b's
 [[nodiscard]] Found test_naively(const Body& a, const Body& b, const Pose& pose) noexcept;
 
-/// The certified test of every pair, 32 at a time; what float leaves goes to double.
+/// The certified test of every pair, 32 at a time; tests pairs that float cannot decide in double.
 [[nodiscard]] Found test_certified(const LaneKernels& lanes, const Body& a, const Body& b,
                                    const Pose& pose) noexcept;
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The certified test for every pair of triangles of two bodies, none left out: what it takes
-// besides the triangles, and the test itself in its stages. The same lines for the brute force on
-// the CPU and on the GPU. Source: docs/theory/accuracy.md, sections 4 and 10; the origin is within
-// 1.74 rho_A of t, as section 4 requires. mm.
+// The certified test for every pair of triangles of two bodies without exception: its constants and
+// its stages. The brute force on the CPU and on the GPU uses the same lines. Source:
+// docs/theory/accuracy.md, sections 4 and 10; the origin is within 1.74 rho_A of t, as section 4
+// requires. mm.
 #pragma once
 
 #include "core/base/host_device.hpp"
@@ -57,7 +57,7 @@ AXG_HD sat::V3<float> less_origin(const Vec3f& v, const Vec3f& o) noexcept {
     return {v.x - o.x, v.y - o.y, v.z - o.z};
 }
 
-/// What the shared axes left: each axis by itself, in float.
+/// Tests a pair that the shared axes left undecided: each axis by itself, in float.
 AXG_HD bool left_is_apart_in_float(const CertifiedPose& q, const Triangle& a, const Triangle& b,
                                    const Vec3f& origin) noexcept {
     const Vec3f va[3] = {a.a, a.b, a.c}, vb[3] = {b.a, b.b, b.c};
@@ -83,7 +83,7 @@ AXG_HD sat::TrianglePair<double> left_in_double(const CertifiedPose& q, const Tr
     return sat::scaled_pair(da, db, q.d64);
 }
 
-/// What the shared axes left: each axis by itself, then in double of un-rounded vertices.
+/// The same test in float, then the test in double of un-rounded vertices.
 AXG_HD bool left_is_apart(const CertifiedPose& q, const Triangle& a, const Triangle& b,
                           const Vec3f& origin) noexcept {
     return left_is_apart_in_float(q, a, b, origin) ||

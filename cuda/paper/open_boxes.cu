@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The seed paper's two levels of boxes, breadth first: a thread a pair of sub-boxes. No bound of
-// any rounding: for comparison only.
+// The seed paper's two levels of boxes, breadth first: one thread per pair of sub-boxes. Without a
+// bound of the roundings: for comparison only.
 #include "cuda/paper/paper_kernels.hpp"
 
 namespace axg::paper {

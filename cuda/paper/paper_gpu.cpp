@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The host's side of the paper's kernels: memory, launches, clocks. Everything is reserved by
-// create().
+// The host's side of the paper's kernels: memory, launches, clocks. create() reserves the memory.
 #include "cuda/paper/paper_gpu.hpp"
 
 #include <algorithm>
@@ -19,13 +18,13 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kSeriesMax = 1U << 14U;  // queries of one series
-constexpr double kLateUs = 10e6;               // a query takes microseconds
+constexpr double kLateUs = 10e6;               // a query needs only microseconds
 
 double us_since(Clock::time_point start) {
     return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
 }
 
-/// Each of the nine coordinates of all triangles in a row.
+/// One row of all triangles for each of the nine coordinates.
 std::vector<float> planes_of(const Body& body) {
     std::vector<float> planes;
     planes.reserve(9 * body.triangles.size());
@@ -152,7 +151,7 @@ bool Gpu::Parts::place_scene() {
             return false;
         }
     }
-    // As long as they can get: no list overflows.
+    // Each list has its greatest possible length: none overflows.
     void *host = nullptr, *mapped = nullptr, *seen = nullptr;
     if (!take(list, groups) || !take(left, pairs) || !take(counters, kSeriesMax) ||
         !is_good(cudaHostAlloc(&host, kPairsOfLaunchMax * sizeof(Counters), cudaHostAllocDefault),
@@ -202,8 +201,8 @@ bool Gpu::Parts::launch_paper(const Techniques& techniques, unsigned blocks, con
         test.list = list;
         groups = test.a.box_count * test.b.box_count;
     }
-    // As the paper launches it, a block a pair of groups; a list, whose length the host does not
-    // know, and a block that fetches its next groups early, go round instead.
+    // The paper launches one block per pair of groups. With a list (the host does not read its
+    // length) or with prefetched groups, each block loops over several pairs instead.
     const bool goes_round = techniques.boxes || techniques.prefetch;
     const unsigned grid = goes_round ? std::min(groups, blocks) : groups;
     return is_good(launch_test_pairs(techniques, test, grid, stream), "test");
@@ -225,7 +224,7 @@ bool Gpu::Parts::launch_certified(std::span<const PairPose> queries, Counters* c
     prove.counters = counts;
     prove.told = signals_host ? told_on_device : nullptr;
     prove.sequence = signals_host ? ++sequence : 0;
-    // Between the events of a queued series no kernel may begin early.
+    // In a queued series no kernel may begin early, because events between kernels measure time.
     return is_good(launch_prove_pairs(prove, stream), "certified, every pair") &&
            is_good(launch_prove_left(
                        prove, {stream, device.multiprocessors_used, signals_host && overlaps}),
@@ -245,7 +244,7 @@ bool Gpu::Parts::finish_each(const Counters* from, std::span<Found> found) {
     return true;
 }
 
-/// Waits for what the device writes into the host's memory by itself.
+/// Waits for the counts that the device itself writes to the host's memory.
 bool Gpu::Parts::finish_told(std::span<Found> found) {
     const std::atomic_ref<std::uint32_t> written(told->sequence);
     const Clock::time_point start = Clock::now();
@@ -283,8 +282,8 @@ bool Gpu::Parts::finish_queued(std::uint32_t together, std::span<Found> found,
     return true;
 }
 
-/// Launches every group and returns when the host has its counts.
-/// @param finish  (counts, found): the counts of a group, once they are there
+/// Launches every group of `together` queries in turn and waits for its counts.
+/// @param finish  (counts, found): waits for the counts of a group and copies them
 template <class Launch, class Finish>
 bool Gpu::Parts::run_each(std::uint32_t together, std::span<Found> found, std::span<double> us,
                           const Launch& launch, const Finish& finish) {
@@ -298,7 +297,7 @@ bool Gpu::Parts::run_each(std::uint32_t together, std::span<Found> found, std::s
     return true;
 }
 
-/// The whole series as one graph, so that the device never waits for the host.
+/// Runs the whole series as one graph, so that the device never waits for the host.
 template <class Launch>
 bool Gpu::Parts::run_queued(std::uint32_t together, std::span<Found> found, std::span<double> us,
                             const Launch& launch) {
@@ -328,7 +327,7 @@ bool Gpu::Parts::run_queued(std::uint32_t together, std::span<Found> found, std:
     return good;
 }
 
-/// @param launch  (i, counts): everything of the queries from i on that are timed as one
+/// @param launch  (i, counts): launches the queries from i on that are timed as one
 template <class Launch, class Finish>
 bool Gpu::Parts::run(Timing timing, std::uint32_t together, std::span<Found> found,
                      std::span<double> us, const Launch& launch, const Finish& finish) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the paper's kernels are handed, and one wrapper a kernel. For cuda/paper/ alone.
+// Arguments of the paper's kernels, and one wrapper per kernel. Only for cuda/paper/.
 #pragma once
 
 #include <cuda_runtime.h>
@@ -34,16 +34,16 @@ struct GroupPair {
 struct Counters {
     std::uint32_t touching, tested, left;
     std::uint32_t listed;  // entries of the launch's list
-    std::uint32_t done;    // blocks that are through with that list
+    std::uint32_t done;    // blocks that have finished that list
 };
 
-/// Counts in the host's memory, for a host that waits for them; `sequence` is written last.
+/// Counts in the host's memory, for which the host polls; the device writes `sequence` last.
 struct Told {
     Counters counts[kPairsOfLaunchMax];
     std::uint32_t sequence;
 };
 
-/// A pair of triangles that the first certified stage left, of query `query` of the launch.
+/// A pair of triangles of query `query` that the first certified stage left undecided.
 struct alignas(16) LeftPair {
     std::uint32_t query, a, b, unused;
 };
@@ -64,35 +64,35 @@ struct TestArguments {
 };
 
 struct ProveArguments {
-    std::uint32_t count, items;                   // queries, and warps' worth of work
+    std::uint32_t count, items;                   // queries, and items: one per warp
     std::uint32_t first_item[kPairsOfLaunchMax];  // of each query
     CertifiedPose pose[kPairsOfLaunchMax];
     DeviceBody a[kPairsOfLaunchMax], b[kPairsOfLaunchMax];
     LeftPair* left;
-    Counters* counters;  // [count]; the list's length is the first one's
-    Told* told;          // null: nobody waits
+    Counters* counters;  // [count]; the first one has the length of the list
+    Told* told;          // null: the host does not poll
     std::uint32_t sequence;
 };
 
-/// Level by level: the bodies' boxes, then every sub-box of a against every one of b.
+/// Tests the bodies' boxes, then every sub-box of a against every one of b.
 cudaError_t launch_open_boxes(const OpenArguments& arguments, cudaStream_t stream) noexcept;
 
-/// Tests the pairs of triangles, 32 x 32 a block. Precondition: blocks_of_test is not 0.
+/// Tests the pairs of triangles, 32 x 32 per block. Precondition: blocks_of_test is not 0.
 cudaError_t launch_test_pairs(const Techniques& techniques, const TestArguments& arguments,
                               unsigned blocks, cudaStream_t stream) noexcept;
 
-/// Blocks of this kernel that a multiprocessor holds at once; 0: it was not compiled, or does not
+/// Blocks of this kernel that a multiprocessor runs at once; 0: it was not compiled, or does not
 /// load.
 [[nodiscard]] unsigned blocks_of_test(const Techniques& techniques) noexcept;
 
-/// Certified: the shared axes for every pair of triangles, then the later stages for what is left.
+/// Certified: the shared axes for every pair of triangles, then the later stages for the rest.
 cudaError_t launch_prove_pairs(const ProveArguments& arguments, cudaStream_t stream) noexcept;
 cudaError_t launch_prove_left(const ProveArguments& arguments, const cuda::Launch& launch) noexcept;
 
-/// Warps of work of one query: what first_item counts.
+/// Items of one query, one per warp; first_item counts them.
 [[nodiscard]] std::uint32_t prove_items(const DeviceBody& a, const DeviceBody& b) noexcept;
 
-/// What each kernel was compiled to.
+/// Resources of each compiled kernel.
 [[nodiscard]] KernelFacts facts_of_open();
 [[nodiscard]] KernelFacts facts_of_test(const Techniques& techniques);
 [[nodiscard]] KernelFacts facts_of_prove();

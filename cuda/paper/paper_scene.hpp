@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bodies as the seed paper's kernels take them: two levels of axis-parallel boxes, the body's and
-// those of groups of at most 32 triangles. mm, each body in its own frame. Plain data; for
+// Bodies in the format of the seed paper's kernels: two levels of axis-parallel boxes, one of the
+// body and one per group of at most 32 triangles. mm, each body in its own frame. Plain data; for
 // comparison only, no part of an engine.
 #pragma once
 
@@ -25,7 +25,7 @@ struct SubBox {
 struct Body {
     std::vector<Triangle> triangles;  // the mesh's, in the order of the sub-boxes
     std::vector<SubBox> boxes;        // the second level: the leaves of the engine's tree
-    std::vector<SubBox> tiles;        // the same triangles, always 32 but for the last
+    std::vector<SubBox> tiles;        // the same triangles, 32 each except the last
     SubBox whole{};                   // the first level
     float reach_mm = 0;               // largest |coordinate|
 };
@@ -47,8 +47,8 @@ struct Scene {
 /// Precondition: 1 to kTrianglesMax triangles, finite, |coordinate| <= kCoordinateMmMax.
 [[nodiscard]] Body make_body(std::span<const Triangle> triangles);
 
-/// Whether the box of x, moved by `pose`, and y do not overlap along y's axes: in float, with no
-/// bound of the rounding, as all of this is.
+/// Whether the box of x, moved by `pose`, and y do not overlap along one of y's axes. In float,
+/// without a bound of the rounding, like all code here.
 AXG_HD bool boxes_apart(const FloatPose& pose, const SubBox& x, const SubBox& y) noexcept {
     bool apart = false;
     for (int k = 0; k < 3; ++k) {
@@ -61,7 +61,7 @@ AXG_HD bool boxes_apart(const FloatPose& pose, const SubBox& x, const SubBox& y)
     return apart;
 }
 
-/// Whether a triangle, already in y's frame, lies beside y along one of y's axes.
+/// Whether a triangle, already in y's frame, is apart from y along one of y's axes.
 AXG_HD bool triangle_apart(const Triangle& t, const SubBox& y) noexcept {
     const float low[3] = {least(least(t.a.x, t.b.x), t.c.x), least(least(t.a.y, t.b.y), t.c.y),
                           least(least(t.a.z, t.b.z), t.c.z)};
@@ -74,9 +74,9 @@ AXG_HD bool triangle_apart(const Triangle& t, const SubBox& y) noexcept {
     return apart;
 }
 
-/// What came of one pair of bodies at one pose.
+/// Findings for one pair of bodies at one pose.
 struct Found {
-    std::uint32_t touching = 0;  // pairs of triangles not told apart
+    std::uint32_t touching = 0;  // pairs of triangles not found apart
     std::uint32_t tested = 0;    // pairs of triangles that reached the test
     std::uint32_t left = 0;      // certified: pairs that the first stage did not prove apart
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the first certified stage left, a warp a pair: each axis by itself in float, then in double,
-// a lane an axis. What nothing proves apart counts as touching. The last block to end signals the
-// host, where one waits.
+// Tests the pairs that the first certified stage left undecided, one warp per pair: each axis by
+// itself in float, then in double with one lane per axis. A pair not proven apart counts as
+// touching. The last block to end signals the host if it polls.
 #include "cuda/engine/launch_kernel.cuh"
 #include "cuda/engine/warp_double.cuh"
 #include "cuda/paper/paper_kernels.hpp"
@@ -13,13 +13,13 @@ using cuda::kWarp;
 
 constexpr unsigned kWarps = 4, kThreads = kWarps * kWarp, kBlocksPerMultiprocessor = 3;
 
-/// By every block that has had work, and by the first one always.
+/// Called by every block that had work, and always by the first one.
 __device__ void signal_host(const ProveArguments& q, unsigned blocks) {
     __syncthreads();
     if (threadIdx.x != 0) {
         return;
     }
-    __threadfence();  // this block's counts are there before it is counted
+    __threadfence();  // this block's counts are visible before it is counted
     if (atomicAdd(&q.counters->done, 1U) + 1 != blocks || q.told == nullptr) {
         return;
     }
@@ -42,7 +42,7 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
     if (blockIdx.x >= blocks) {
         return;
     }
-    // One to every block before any block gets a second.
+    // Every block gets one pair before any block gets a second.
     for (unsigned i = warp * gridDim.x + blockIdx.x; i < count; i += gridDim.x * kWarps) {
         const LeftPair at = q.left[i];
         const CertifiedPose& pose = q.pose[at.query];

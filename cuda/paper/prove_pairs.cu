@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The certified test of every pair of triangles of up to eight pairs of bodies in one launch: all
-// seventeen axes from shared products for each, no box, no early end. A warp takes eight triangles
-// of a against 32 of b, a lane a triangle of b. What the first stage leaves goes to a list.
+// seventeen axes from shared products for each, no box, no early exit. A warp tests eight triangles
+// of a against 32 of b, one lane per triangle of b. Lists the pairs that remain undecided.
 #include "core/collision/shared_axes.hpp"
 #include "cuda/engine/launch_kernel.cuh"
 #include "cuda/paper/paper_kernels.hpp"
@@ -12,7 +12,7 @@ namespace {
 constexpr unsigned kWarp = 32, kWarps = 4, kThreads = kWarps * kWarp;
 constexpr unsigned kChunk = 8;  // triangles of a that share an origin
 
-/// Nine coordinates a triangle, filled up to three loads of 16 bytes.
+/// Nine coordinates per triangle, padded to three loads of 16 bytes.
 struct alignas(16) Chunk {
     float v[kChunk][12];
 };
@@ -36,7 +36,7 @@ __device__ Work work_at(const ProveArguments& q, unsigned item) {
     return {query, at / tiles * kChunk, at % tiles * kWarp};
 }
 
-/// 24 lanes move a vertex each.
+/// Moves a chunk: 24 lanes move one vertex each.
 __device__ void move_chunk(const CertifiedPose& pose, const DeviceBody& a, unsigned first,
                            const Vec3f& origin, Chunk& chunk) {
     const unsigned lane = threadIdx.x % kWarp, place = lane / 3;

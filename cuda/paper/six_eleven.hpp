@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The seed paper's test of two triangles as it is usually programmed: six axes where the normals
-// are parallel within a threshold, eleven where they are not, compared in float without a bound of
-// their rounding. For comparison only: it proves nothing. The formula of the laboratory's
-// paper-6-11 (tests/property/cuda/paper/paper_formula_test.cpp holds the two together), with the
-// loops over axes rolled or unrolled and with the axis that separated. Read by g++ and nvcc. mm.
+// The seed paper's 6-or-11 test of two triangles as it is usually programmed: the normals; then six
+// axes in the plane if the normals are parallel within a threshold, else nine products of edges. In
+// float without a bound of the rounding. For comparison only: it proves nothing. The formula is the
+// laboratory's paper-6-11 (tests/property/cuda/paper/paper_formula_test.cpp compares them), with
+// loops over axes rolled or unrolled, and with the separating axis. Compiled by g++ and nvcc. mm.
 // Source: Siao, Lin, Chien, Chang, "Paralleling Collision Detection on Five-Axis Machining", 2021;
 // the threshold is that of Eberly, Geometric Tools.
 #pragma once
@@ -81,7 +81,7 @@ AXG_HD bool apart_along(const EdgedPair& s, const Vec3f& l) noexcept {
     return most(above, below) > 0.0F;
 }
 
-/// One of three, by comparing values: an array indexed at run time would go to memory.
+/// Selects one of three by comparisons: an array indexed at run time would be in local memory.
 AXG_HD float picked(float a, float b, float c, unsigned i) noexcept {
     return i == 0 ? a : i == 1 ? b : c;
 }
@@ -90,8 +90,8 @@ AXG_HD Vec3f picked(const Vec3f (&of)[3], unsigned i) noexcept {
             picked(of[0].z, of[1].z, of[2].z, i)};
 }
 
-/// Apart along one axis named by its number: any vector is a candidate, so one that separated the
-/// pair at an earlier pose is worth trying first.
+/// Whether a pair is apart along the axis of this number. Any vector may be tried, so the one that
+/// separated the pair at an earlier pose is worth trying first.
 AXG_HD bool apart_along_axis(const EdgedPair& s, unsigned axis) noexcept {
     const bool is_product = axis >= 2 && axis < 11, of_b = axis == 1 || axis >= 14;
     const Vec3f n = of_b ? cross(s.eb[0], s.eb[1]) : cross(s.ea[0], s.ea[1]);
@@ -103,7 +103,7 @@ AXG_HD bool apart_along_axis(const EdgedPair& s, unsigned axis) noexcept {
     return apart_along(s, cross(edge, is_product ? picked(s.eb, (axis - 2) % 3) : n));
 }
 
-/// The axes of one kind one after the other, up to the first that separates; kNoAxis: none does.
+/// Tests the axes of one kind in turn. Returns the first that separates; kNoAxis: none does.
 template <bool kUnroll>
 AXG_HD unsigned separating_product(const EdgedPair& s) noexcept {
     AXG_PAPER_LOOP

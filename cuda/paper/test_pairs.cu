@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The seed paper's test: blocks of 32 x 32 threads, a thread a pair of triangles, with the paper's
-// techniques as switches of one template. No bound of any rounding: for comparison only.
+// The seed paper's test: blocks of 32 x 32 threads, one thread per pair of triangles, with the
+// paper's techniques as switches of one template. No bound of the roundings: for comparison only.
 #include "core/base/assert.hpp"
 #include "cuda/paper/paper_kernels.hpp"
 
@@ -9,7 +9,7 @@ namespace {
 
 constexpr unsigned kSide = kNodeWidth, kThreads = kSide * kSide, kAllLanes = 0xffffffffU;
 
-/// A block's tile: the triangles of both groups in b's frame, and those that are still of interest.
+/// A block's tile: the triangles of both groups in b's frame, and the numbers of those to test.
 struct Tile {
     Triangle a[kSide], b[kSide];
     std::uint8_t kept[2][kSide];
@@ -32,8 +32,8 @@ __device__ Groups groups_at(const TestArguments& q, unsigned item) {
     return {q.a.tiles[item / q.b.tile_count], q.b.tiles[item % q.b.tile_count]};
 }
 
-/// Prefetch: this thread's vertex of the next pair of groups, still in its own frame. The first 96
-/// threads bring a's, the next 96 b's.
+/// Prefetch: this thread's vertex of the next pair of groups, still in its body's frame. The first
+/// 96 threads load a's vertices, the next 96 b's.
 __device__ Vec3f fetched(const TestArguments& q, unsigned item, unsigned count) {
     const unsigned t = threadIdx.y * kSide + threadIdx.x;
     if (item >= count || t >= 6 * kSide) {
@@ -56,7 +56,7 @@ __device__ void put(const TestArguments& q, const Vec3f& vertex, Tile& tile) {
     }
 }
 
-/// Coalesced: threads beside each other read floats beside each other, nine times.
+/// Coalesced: adjacent threads read adjacent floats, nine times.
 __device__ Triangle from_planes(const DeviceBody& body, unsigned at) {
     const auto vertex = [&body, at](unsigned k) {
         const float* const x = body.planes + std::size_t{3} * k * body.triangle_count + at;
@@ -76,7 +76,7 @@ __device__ Triangle triangle_of_b(const TestArguments& q, const Tile& tile, cons
     return kPrefetch ? tile.b[j] : q.b.triangles[box.first + j];
 }
 
-/// Interchange: warp 0 holds a's triangles against b's box, warp 1 b's against a's.
+/// Interchange: warp 0 tests a's triangles against b's box, warp 1 b's triangles against a's box.
 template <bool kPrefetch>
 __device__ void keep_near(const TestArguments& q, const Groups& g, Tile& tile) {
     const unsigned warp = threadIdx.y, lane = threadIdx.x;
@@ -159,7 +159,7 @@ __global__ void __launch_bounds__(kThreads)
             atomicAdd(&q.counters->touching, static_cast<unsigned>(__popc(hits)));
         }
         if constexpr (kInterchange || kPrefetch) {
-            __syncthreads();  // the tile is about to be filled again
+            __syncthreads();  // the next pair of groups overwrites the tile
         }
     }
     if (t == 0 && tested != 0) {
@@ -167,7 +167,7 @@ __global__ void __launch_bounds__(kThreads)
     }
 }
 
-/// The kernel without a technique, but for the order in memory.
+/// The kernel without any technique except the order in memory.
 __global__ void __launch_bounds__(kThreads)
     test_coalesced_kernel(const __grid_constant__ TestArguments q) {
     const unsigned count = group_pairs(q), t = threadIdx.y * kSide + threadIdx.x;
@@ -199,7 +199,7 @@ constexpr Kernel kernel_of() {
                               (kBits & 8U) != 0>;
 }
 
-/// None, each alone, all, and all but one; null: the rest is not compiled.
+/// The kernel without techniques, with one, with all or with all but one; null: not compiled.
 Kernel kernel_for(const Techniques& t) {
     const unsigned bits = (t.interchange ? 1U : 0U) | (t.prefetch ? 2U : 0U) |
                           (t.unroll ? 4U : 0U) | (t.carry ? 8U : 0U);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// May a guard begin on this machine? What was measured just before goes in, the verdict comes out:
-// no clock, file or device here. A figure that is missing is a check that has failed.
-// What each check is, and what it does not show: docs/reference/axguardd.md, "Admission".
+// Decides whether a guard may start on this machine. Input: figures measured just before; output:
+// the verdict. Uses no clock, file or device. A check whose figure is missing has failed.
+// The checks, and what they do not show: docs/reference/axguardd.md, "Admission".
 #pragma once
 
 #include <array>
@@ -41,17 +41,17 @@ struct CycleFigures {
     std::string engine;  // "cpu, avx2 lanes", or the GPU's name
     std::uint32_t count = 0, proven_count = 0;
     double proven_us = 0;  // the longest that would have led to a permit: it has the deadline
-    // The longest of all. One that is not proven gives no permit, late or not; but an engine that
-    // is silent for as long as a permit lasts is taken for lost.
+    // The longest of all. A cycle that is not proven sends no permit, late or not; but the guard
+    // treats an engine without a result for as long as a permit lasts as lost.
     double longest_us = 0;
     std::uint32_t queries_max = 0;  // of a cycle; contact mode: 0
-    double worst_case_us = 0;       // every list full; 0: contact mode on the CPU
-    std::string plan{};             // whose lists those are; empty: a GPU's
+    double worst_case_us = 0;       // every list full; 0: contact mode
+    std::string plan{};             // with those lists; empty: contact mode
 };
 
 struct MemoryFigures {
     std::uint64_t reserved_bytes = 0;   // by the engine, already
-    std::uint64_t more_bytes = 0;       // that the threads will take
+    std::uint64_t more_bytes = 0;       // that the threads will reserve
     std::uint64_t available_bytes = 0;  // without swapping
     std::uint64_t mapped_bytes = 0;     // by the process: all of it is locked
     std::uint64_t lock_limit_bytes = 0;

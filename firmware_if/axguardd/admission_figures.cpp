@@ -36,12 +36,12 @@ constexpr double kFullSpeed = 0.9;  // of what an axis may do: rounding makes no
 // (sched_rt_runtime_us).
 constexpr timespec kPause{.tv_sec = 0, .tv_nsec = 5'000'000};
 
-/// On a thread of its own, whose priority ends with it. False: there is no thread to be had.
+/// Runs on a thread of its own, whose priority ends with it. False: no thread could be created.
 template <class Work>
 bool on_thread(int priority, int cpu, const Work& work) {
     try {
         std::thread([&] {
-            // Refused: doctor has said so.
+            // The system check already reports a refusal.
             static_cast<void>(stay_on_cpu(cpu));
             static_cast<void>(priority > 0 ? take_priority(priority) : std::string());
             work();
@@ -93,9 +93,9 @@ void run_cycle(GuardChain& chain, ColdCaches& caches, CycleFigures& out) noexcep
     }
 }
 
-/// Two snapshots a cycle, the fewest that anything is queried for: they bound the speeds and say
-/// nothing of accelerations, so the boxes are large, and near contact they are cut until the
-/// queries or the rounds of a cycle are used up.
+/// Two snapshots a cycle, the fewest that lead to queries: they bound the speeds but not the
+/// accelerations, so the boxes are large. Near contact the prover halves them until it has used
+/// all queries or rounds of a cycle.
 void run_cycles(const Machine& machine, GuardChain& chain, ColdCaches& caches,
                 CycleFigures& out) noexcept {
     const double period_s = static_cast<double>(machine.can.sample_us) * 1e-6;
@@ -117,8 +117,8 @@ void run_cycles(const Machine& machine, GuardChain& chain, ColdCaches& caches,
     }
 }
 
-/// A machine whose board sends a look-ahead path is queried about boxes here, for no path is known:
-/// the same queries and rounds bound a cycle of either.
+/// Replaces a look-ahead path by boxes, for this measurement has no path. The same queries and
+/// rounds bound a cycle of either.
 LoadedMachine without_path(const LoadedMachine& loaded) {
     LoadedMachine out = loaded;
     out.machine.guard.promise = StopPromise::independent;
@@ -126,7 +126,7 @@ LoadedMachine without_path(const LoadedMachine& loaded) {
     return out;
 }
 
-/// The longest cycle of the plan that was chosen, in the engine thread's place. False: it could not
+/// Measures the longest cycle of the chosen plan, in the engine thread's place. False: it could not
 /// be measured.
 bool measure_plan(const LoadedMachine& loaded, const LiveEngines& engines, CycleFigures& out) {
     std::string fault;
@@ -149,7 +149,7 @@ bool measure_plan(const LoadedMachine& loaded, const LiveEngines& engines, Cycle
     return measured.has_value();
 }
 
-/// A chain of its own: what it proves here is nothing that the guard may begin with.
+/// Uses a chain of its own: the guard must not start with proofs of this measurement.
 void measure_engine(const AdmissionRun& run, const LoadedMachine& loaded, LiveEngines& engines,
                     AdmissionFigures& out) {
     const LoadedMachine measured = without_path(loaded);
@@ -179,8 +179,8 @@ void measure_engine(const AdmissionRun& run, const LoadedMachine& loaded, LiveEn
     }
 }
 
-/// kB of a line of /proc/meminfo. The service sees no such file, and asks for what nobody uses at
-/// all: less than what could be had.
+/// MemAvailable of /proc/meminfo in bytes. A service cannot read that file: it uses the free memory
+/// of sysinfo() instead, which is less than what is available.
 std::uint64_t available_bytes() {
     const std::string table = read_small_file("/proc/meminfo");
     constexpr std::string_view kName = "MemAvailable:";

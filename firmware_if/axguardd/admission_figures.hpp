@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Measures what an admission is judged by, on threads with the priorities and processors that the
-// guard's own will have. Takes the stated seconds for the wake-ups, and about one for the cycles.
+// Measures the figures of an admission, on threads with the priorities and processors that the
+// guard's own will have. Needs the stated seconds for the wake-ups, and about one for the cycles.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ struct AdmissionRun {
     double seconds = 2;  // of wake-ups
 };
 
-/// What cannot be measured is left out, which `judge_admission` takes for failed.
+/// A figure that cannot be measured is left empty, which `judge_admission` treats as failed.
 [[nodiscard]] AdmissionFigures measure_admission(const AdmissionRun& run,
                                                  const LoadedMachine& loaded, LiveEngines& engines);
 

@@ -9,7 +9,7 @@
 
 namespace axg {
 
-/// Whose verdict it is.
+/// The guard that the verdict is about.
 struct AdmissionSubject {
     std::string machine, configuration_sha256, bus, mode;
     std::string state_dir;

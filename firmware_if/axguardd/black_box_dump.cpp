@@ -20,7 +20,7 @@ namespace {
 constexpr std::int64_t kAfterStopUs = 500'000;
 constexpr const char* kEnding = ".axgbox";
 
-/// All of it, however many calls that takes.
+/// Writes all bytes, in as many calls as needed.
 bool write_all(int file, std::span<const std::uint8_t> bytes) noexcept {
     while (!bytes.empty()) {
         const ssize_t written = ::write(file, bytes.data(), bytes.size());

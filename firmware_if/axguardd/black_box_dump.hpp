@@ -20,16 +20,16 @@ struct BlackBoxFolder {
 [[nodiscard]] std::string write_black_box(const BlackBox& black_box, const BlackBoxHeader& header,
                                           const BlackBoxFolder& folder, std::string& fault);
 
-/// When to do that: half a second after a stop, so that what the board did then is in it.
+/// Writes half a second after a stop, so that the dump contains the board's reaction.
 class BlackBoxDump {
   public:
     BlackBoxDump(const BlackBox& black_box, const BlackBoxHeader& header, BlackBoxFolder folder)
         : black_box_(black_box), header_(header), folder_(std::move(folder)) {}
 
     void on_note(const LiveNote& note) noexcept;
-    /// Writes what is due. Says on stderr what came of it.
+    /// Writes a dump that is due, and prints its path or the fault on stderr.
     void serve(std::int64_t now_us);
-    /// The process ends: what is not due yet is written as well.
+    /// For the end of the process: also writes a dump that is not due yet.
     void finish(std::int64_t now_us);
     /// The newest; empty: none was written.
     [[nodiscard]] const std::string& path() const noexcept { return path_; }

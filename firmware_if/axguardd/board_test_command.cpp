@@ -47,7 +47,7 @@ struct BoardTestArguments {
     JsonOutput report;
 };
 
-/// A person has to know what will happen, and want it.
+/// Explains what will happen, and requires a person's consent.
 bool is_agreed(const BoardTestArguments& arguments) {
     fmt::print(
         stderr,
@@ -74,7 +74,8 @@ std::string record_path(const BoardTestArguments& arguments) {
     return board_test_path(arguments.state_dir, arguments.bus);
 }
 
-/// What the record needs before anything moves: a place, and a serial or a person to ask for it.
+/// Checks before any motion that a record can be written: its path, and the serial number or a
+/// person to type it. Empty, or the fault.
 std::string record_fault(const BoardTestArguments& arguments) {
     const bool is_asked = !arguments.is_agreed && isatty(STDIN_FILENO) != 0;
     if (arguments.keys_file.empty()) {
@@ -89,7 +90,7 @@ std::string record_fault(const BoardTestArguments& arguments) {
     return fault.empty() ? record_place_fault(record_path(arguments)) : "--serial: " + fault;
 }
 
-/// False: the record would be of no board.
+/// False: no valid serial number; the record would name no board.
 bool ask_serial(BoardTestArguments& arguments) {
     if (arguments.keys_file.empty() || !arguments.serial.empty()) {
         return true;
@@ -103,7 +104,7 @@ bool ask_serial(BoardTestArguments& arguments) {
     return fault.empty();
 }
 
-/// As far as the system lets it: a late permit is found, and its case is played again.
+/// As far as the system allows: the player detects a late permit and repeats its case.
 void be_on_time(const BoardTestArguments& arguments) {
     for (const std::string& words :
          {lock_memory(), stay_on_cpu(arguments.cpu),
@@ -128,7 +129,7 @@ void tell(const BoardPlayer& player, PersonTask& told, const BoardCase*& last) {
     }
 }
 
-/// Until this instant, or until a frame is there.
+/// Waits until this instant, or until a frame arrives.
 void wait_until(const SocketCan& wire, std::int64_t until_us) {
     const std::int64_t left_us = std::clamp<std::int64_t>(until_us - monotonic_us(), 0, kTurnUs);
     const timespec timeout{.tv_sec = 0, .tv_nsec = left_us * 1000};
@@ -136,7 +137,7 @@ void wait_until(const SocketCan& wire, std::int64_t until_us) {
     ppoll(&wait, 1, &timeout, nullptr);
 }
 
-/// False: the bus is gone, and the player was told so.
+/// False: the bus is gone, and the player is interrupted.
 bool exchange(const Machine& machine, SocketCan& wire, BoardPlayer& player) {
     CanArrival arrival;
     ReadStatus status = wire.read(arrival);
@@ -163,7 +164,7 @@ bool exchange(const Machine& machine, SocketCan& wire, BoardPlayer& player) {
     return true;
 }
 
-/// Keys first: a record without them would be of a configuration that nobody has.
+/// Called after the keys are written: a record without them would name no existing configuration.
 bool write_record(const BoardTestArguments& arguments, const LoadedMachine& loaded,
                   const BoardTestResult& result) {
     const std::string path = record_path(arguments);
@@ -207,7 +208,7 @@ int report(const BoardTestArguments& arguments, const LoadedMachine& loaded,
                                                              : kExitClean;
 }
 
-/// Until the test is over, and its last frame on the bus.
+/// Plays until the test is over and its last frame is on the bus.
 void play(const Machine& machine, SocketCan& wire, BoardPlayer& player) {
     EndSignals signals;
     PersonTask told = PersonTask::nothing;
@@ -269,7 +270,7 @@ std::string board_of(const CanLayout& can) {
     return fmt::format("can.permit: {}", can.permit_version);
 }
 
-/// A pipe or a device may keep the program waiting once it has moved the machine.
+/// Rejects pipes and devices: they could block the program after it has moved the machine.
 std::string report_fault(const std::string& name) {
     struct stat found {};
     const bool is_file = name == "-" || stat(name.c_str(), &found) != 0 || S_ISREG(found.st_mode);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `axguardd doctor`: what of this machine would make the guard late or deaf, and the command that
-// mends it.
+// `axguardd doctor`: checks this host for settings that delay the guard or lose CAN frames, and
+// prints the command that corrects each.
 #pragma once
 
 namespace axg {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// axguardd latency-test: how late this machine wakes a thread up, and which cycle that is fit for.
+// axguardd latency-test: measures thread wake-up latency, and the period that it allows.
 #pragma once
 
 #include <cstdint>
@@ -11,11 +11,11 @@ namespace axg {
 class Command;
 class CommandLine;
 
-/// The share of a period that a late wake-up may take; as much as a SYNC may be off its period
+/// A wake-up may be late by 1/kWakeUpShare of a period, as much as a SYNC may be off its period
 /// (docs/reference/protocol.md, rule 6).
 inline constexpr std::int64_t kWakeUpShare = 5;
 
-/// The shortest period that such a lateness leaves fit, us.
+/// The shortest period that such a latency allows, us.
 [[nodiscard]] constexpr std::int64_t fit_period_us(std::int64_t latest_ns) noexcept {
     return latest_ns <= 0 ? 1 : (latest_ns * kWakeUpShare + 999) / 1000;
 }

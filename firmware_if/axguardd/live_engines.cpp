@@ -18,7 +18,7 @@ ChosenEngine none(std::string_view words) {
     return {.words = std::string(words), .refusal = EngineRefusal::unfit};
 }
 
-/// Of a GPU that was admitted with it.
+/// The plan with which the GPU was admitted.
 ChosenPlan plan_of_gpu(const ChosenEngine& chosen, const CycleDemand& demand) {
     return {.plan = *demand.plan,
             .is_fit = true,

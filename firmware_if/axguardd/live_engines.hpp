@@ -24,12 +24,12 @@ struct LiveEngines {
 
     std::optional<CpuEngine> cpu;
     std::optional<ContainmentTest> containment_test;
-    // Of a stoppable guard; empty where it could not be measured, and then nothing may be admitted.
+    // For a stoppable guard. Empty: it could not be measured, and no guard is admitted.
     std::optional<ChosenPlan> plan;
     ChosenEngine chosen;  // without a refusal where all of them are there
 };
 
-/// What was chosen and why, or why not, goes to stderr. The exit code.
+/// Prints on stderr which engine was chosen and why, or why none. Returns the exit code.
 [[nodiscard]] int log_engines(const LiveEngines& engines);
 
 }  // namespace axg

@@ -121,12 +121,12 @@ LiveView view_of(const Shared& shared, const GuardNode& guard, std::int64_t now_
             .compares_hashes = shared.options.compares_hashes};
 }
 
-/// What the logger and the status thread may know of a turn.
+/// Publishes the turn to the logger and the status thread.
 void show(Shared& shared, const GuardNode& guard, std::int64_t now_us) noexcept {
     shared.period.store(guard.guard().period);
     const auto view = [&] { return view_of(shared, guard, now_us); };
     if (shared.wants_view.exchange(false)) {
-        // Full where the logger is slow: it asks again.
+        // Full if the logger is slow: it requests again.
         [[maybe_unused]] const bool is_pushed = shared.views.push(view());
     }
     if (shared.options.why != nullptr) {
@@ -186,7 +186,7 @@ void* run_engine(void* argument) {
     Shared& shared = *static_cast<Shared*>(argument);
     prepare("engine thread", shared.options.engine_priority, shared.options.engine_cpu);
     const LiveEngine live{shared.machine, shared.chain};
-    StopReason said = StopReason::none;  // of the last result, where a limit says more
+    StopReason said = StopReason::none;  // of the last result, if it has a limit
     while (!shared.is_ending.load()) {
         await(shared.wake_engine);
         run_queries(live, shared.queues, [&](LiveResult live_result) {
@@ -197,7 +197,7 @@ void* run_engine(void* argument) {
                     shared.limits.push({reason, live_result.result.limit});
             }
             said = has_limit(reason) ? reason : StopReason::none;
-            // Full only where the bus thread stands still; then nobody is there to use a result.
+            // Full only if the bus thread is blocked: then no thread can use a result.
             [[maybe_unused]] const bool is_pushed = shared.queues.results.push(live_result);
             wake(shared.wake_bus);
             if (shared.options.why != nullptr) {  // the permit or the stop is on its way
@@ -224,7 +224,7 @@ std::uint32_t read_backlog_drops(int file) noexcept {
     return drops;
 }
 
-/// What the note of the same stop has no room for.
+/// Logs broken limits, which do not fit into the note of the same stop.
 void write_limits(Shared& shared) {
     std::array<char, 400> line{};
     BrokenLimit broken;
@@ -246,7 +246,7 @@ void write_limits(Shared& shared) {
     }
 }
 
-/// What the manager of services shows.
+/// Sets the status that the service manager shows.
 void set_status(Shared& shared, std::string_view words) {
     std::array<char, 400> text{};
     const auto end =
@@ -281,7 +281,7 @@ void write_notes(Shared& shared) {
     shared.dump.serve(monotonic_us());
 }
 
-/// The metrics of about now, in the place of those before.
+/// Replaces the metrics file by the metrics of about now.
 class MetricsWriter {
   public:
     explicit MetricsWriter(const ThreadOptions& options)
@@ -353,7 +353,7 @@ sigset_t watched_signals() noexcept {
     return signals;
 }
 
-/// Until one of them says to end.
+/// Returns when a signal ends the program.
 void serve_signals(Shared& shared) {
     const sigset_t signals = watched_signals();
     for (;;) {
@@ -366,7 +366,7 @@ void serve_signals(Shared& shared) {
     }
 }
 
-/// False: the thread could not be made.
+/// False: the thread could not be created.
 bool start(pthread_t& thread, void* (*run)(void*), Shared& shared) {
     pthread_attr_t attributes;
     pthread_attr_init(&attributes);

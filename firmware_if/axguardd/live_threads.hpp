@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The threads of the deployed guard except the main one, which waits for signals. One at the bus,
-// with the deadline; one that runs the engine; one that writes; one that serves the status socket.
-// They share queues without locks, and the first two a descriptor each to be woken by, so that none
-// can hold up another. After the start the first two allocate nothing; the one that writes does for
-// a dump.
+// The threads of the deployed guard except the main one, which waits for signals: the bus thread,
+// with the deadline; the engine thread; the logger; the status thread. They share queues without
+// locks; a descriptor each wakes the first two, so that none can block another. After the start the
+// first two allocate nothing; the logger does for a dump.
 #pragma once
 
 #include <string>
@@ -24,7 +23,7 @@ struct ThreadOptions {
     int bus_priority = 80, engine_priority = 70;  // SCHED_FIFO; 0: as it is
     int bus_cpu = -1, engine_cpu = -1;            // -1: any
     LiveOptions guard;
-    BlackBoxHeader black_box;  // what its dumps say of this run
+    BlackBoxHeader black_box;  // header of its dumps
     BlackBoxFolder dumps;
     std::string bus;           // names the guard in its metrics
     std::string metrics_file;  // empty: none are written
@@ -48,7 +47,7 @@ struct LiveEnd {
     std::string fault;  // a thread or descriptor could not be made
 };
 
-/// What run_live reserves for threads, queues and the black box.
+/// Bytes that run_live reserves for threads, queues and the black box.
 [[nodiscard]] std::size_t live_bytes(const Machine& machine) noexcept;
 
 /// Runs until SIGTERM or SIGINT, or until the interface is removed. SIGUSR1 arms, SIGUSR2 resets.

@@ -130,7 +130,7 @@ bool is_something_else(const std::string& path) noexcept {
 
 bool ReplacedFile::replace(std::span<const char> text) const noexcept {
     if (is_something_else(path_)) {
-        return false;  // it took the name meanwhile
+        return false;  // it has the name meanwhile
     }
     const int file =
         open(part_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0644);

@@ -19,7 +19,7 @@ namespace axg {
 
 inline constexpr std::int64_t kMetricsPeriodUs = 1'000'000;
 
-/// What the admission at the start came to, one bit a check in the order of kAdmissionChecks.
+/// Verdict of the admission at the start, one bit a check in the order of kAdmissionChecks.
 struct AdmissionGauge {
     bool is_fit = false;
     double margin = 0;
@@ -27,7 +27,7 @@ struct AdmissionGauge {
 };
 [[nodiscard]] AdmissionGauge gauge_of(const AdmissionVerdict& verdict) noexcept;
 
-/// What the bus thread hands out of itself.
+/// The bus thread's copy of its state for other threads.
 struct LiveView {
     GuardPhase phase = GuardPhase::stopped;
     GuardFault cause = GuardFault::none;

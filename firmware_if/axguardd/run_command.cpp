@@ -62,7 +62,7 @@ int exit_code_of(const LiveEnd& end, bool has_gpu_fault) {
     return end.guard.phase == GuardPhase::stopped ? exit_code_of(end.guard.cause) : kExitClean;
 }
 
-/// The machine file's line, if it names one. False: it cannot be had, and `fault` says why.
+/// Opens the machine file's output line, if it names one. False: the reason is in `fault`.
 bool open_line(const OutputLine& wanted, std::optional<GpioLine>& line, std::string& fault) {
     if (!wanted.chip.empty()) {
         line = GpioLine::open("/dev/" + wanted.chip, wanted.line, fault);
@@ -70,7 +70,7 @@ bool open_line(const OutputLine& wanted, std::optional<GpioLine>& line, std::str
     return wanted.chip.empty() || line;
 }
 
-/// The options of the threads, with what a dump of the black box says of this run.
+/// The options of the threads, with the header of a black-box dump for this run.
 ThreadOptions with_black_box(const RunArguments& arguments, const LoadedMachine& loaded,
                              PulseLine* line) {
     ThreadOptions threads = arguments.threads;
@@ -88,7 +88,7 @@ ThreadOptions with_black_box(const RunArguments& arguments, const LoadedMachine&
     return threads;
 }
 
-/// The last words, and the exit code.
+/// Prints the end of the run. Returns the exit code.
 int report_end(const RunArguments& arguments, const Machine& machine, const LiveEngines& engines,
                const LiveEnd& end) {
     if (!end.fault.empty()) {
@@ -109,8 +109,8 @@ int report_end(const RunArguments& arguments, const Machine& machine, const Live
     return is_written ? exit_code_of(end, gpu_fault != nullptr) : kExitInternal;
 }
 
-/// Whether the guard may begin here: by what was measured, or because a person named every check
-/// that failed. All of it is said.
+/// Whether the guard may start here: every check passed, or a person waived each one that failed.
+/// Prints the verdict.
 bool is_admitted(const RunArguments& arguments, const LoadedMachine& loaded, LiveEngines& engines,
                  AdmissionGauge& gauge) {
     const ThreadOptions& threads = arguments.threads;
@@ -138,7 +138,7 @@ bool is_admitted(const RunArguments& arguments, const LoadedMachine& loaded, Liv
     return is_waived;
 }
 
-/// False: a status socket was asked for and could not be opened; the reason is printed.
+/// False: the requested status socket could not be opened; prints the reason.
 bool open_status(const RunArguments& arguments, StatusSocket& status_socket) {
     if (arguments.status_socket.empty()) {
         return true;
@@ -177,7 +177,7 @@ FoundRecord log_board_test(const RunArguments& arguments, const LoadedMachine& l
     return found;
 }
 
-/// Everything that is fallible and slow, before the first frame.
+/// Does everything that may fail or is slow before the first frame, then runs the guard.
 int guard_bus(const RunArguments& arguments, LoadedMachine& loaded) {
     const bool is_stoppable = arguments.mode == "stoppable";
     if (!forget_admission(arguments.state_dir, arguments.bus, stderr)) {
@@ -222,7 +222,7 @@ int guard_bus(const RunArguments& arguments, LoadedMachine& loaded) {
                                  configuration_hash(machine, loaded.meshes),
                                  log_board_test(arguments, loaded));
     ThreadOptions threads = with_black_box(arguments, loaded, line ? &*line : nullptr);
-    // Measured with the rest: the admission counts its memory.
+    // Created before the admission, which counts its memory.
     std::optional<CpuEngine> status_engine =
         status_socket.is_open() ? CpuEngine::over_trees(engines.cpu->trees(), machine.capacities)
                                 : std::nullopt;
@@ -247,8 +247,8 @@ int guard_bus(const RunArguments& arguments, LoadedMachine& loaded) {
     return report_end(arguments, machine, engines, end);
 }
 
-/// A person who arms or resets while the guard is still being measured has to hear that this has no
-/// effect, and must not end it: the main thread serves these signals when it runs.
+/// A signal to arm or reset during the admission must not end the program. Blocks both signals: the
+/// main thread serves them when the guard runs, and the guard reports that they have no effect.
 void hold_wishes() noexcept {
     sigset_t wishes;
     sigemptyset(&wishes);
@@ -257,7 +257,7 @@ void hold_wishes() noexcept {
     pthread_sigmask(SIG_BLOCK, &wishes, nullptr);
 }
 
-/// The socket would be made, and then replaced by the metrics.
+/// False: both have one name, and the metrics file would replace the socket.
 bool is_socket_free_of_metrics(const RunArguments& arguments) {
     const std::string& metrics = arguments.threads.metrics_file;
     if (metrics.empty() || arguments.status_socket.empty()) {

@@ -20,7 +20,7 @@ struct StatusArguments {
     JsonOutput json;
 };
 
-/// Where the service has it.
+/// The given socket, or that of the service on this bus.
 std::string path_of(const StatusArguments& arguments) {
     return arguments.socket.empty() ? fmt::format("/run/axguardd/{}/status", arguments.bus)
                                     : arguments.socket;

@@ -156,7 +156,7 @@ constexpr std::array<WhyPart, 5> kWhyParts{{{"to_standstill_mm", "motion to stan
 
 constexpr std::uint64_t kHeldMs = 1000;  // a bus thread that turns has shown more since
 
-/// Of a line that is_status: foreign text, and a terminal shows it.
+/// Text of a line that passed is_status, escaped: foreign text that a terminal shows.
 std::string text_at(const Json& json, const char* key) {
     return escaped(json.at(key).get<std::string>());
 }
@@ -322,7 +322,7 @@ double mm_at(const Json& json, const char* key) {
     return json.at(key).get<double>();
 }
 
-/// What a reader needs first, as a replay prints it.
+/// The sentences that a reader needs first, as a replay prints them.
 std::string sentences_of(const Json& json, const Json& why, const Json& pair) {
     std::string out;
     if (pair.is_null()) {
@@ -342,7 +342,7 @@ std::string sentences_of(const Json& json, const Json& why, const Json& pair) {
     return out;
 }
 
-/// Lines below the stop or the withheld permit; none where no distances are known.
+/// Lines below the stop or the withheld permit; empty without distances.
 std::string words_of_why(const Json& json, const char* key, const char* pair) {
     const Json& why = json.at(key);
     if (why.is_null()) {
@@ -375,7 +375,7 @@ std::string words_of_why(const Json& json, const char* key, const char* pair) {
                       : "");
 }
 
-/// Nothing in armed: the permit then flows, or the guard stops.
+/// Empty in phase armed: the guard then sends permits, or stops.
 std::string words_of_withheld(const Json& json) {
     const std::string why = text_at(json, "withheld");
     const std::string reason = text_at(json, "withheld_reason");
@@ -437,7 +437,7 @@ std::string words_of_view(const Json& json) {
     return out;
 }
 
-/// Of a guard whose bus thread has not turned yet. That is unknown, and no reason to go on.
+/// For a guard whose bus thread has not turned yet: its state is unknown, so not exit code 0.
 StatusWords words_of_init(const Json& json) {
     return {
         .text = fmt::format("{}: init: no update of the bus thread yet\n", text_at(json, "bus")) +

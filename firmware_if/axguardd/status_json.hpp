@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The guard's state as one line of JSON, for whoever opens the status socket, and that line in
+// The guard's state as one line of JSON, for every client of the status socket, and that line in
 // words. Keys: docs/reference/axguardd.md, "State without root".
 #pragma once
 
@@ -17,7 +17,7 @@ namespace axg {
 
 inline constexpr std::size_t kStatusLineBytesMax = 4096;
 
-/// What is the same in every line of a run.
+/// Writes status lines; stores the part that is the same in every line of a run.
 class StatusLine {
   public:
     /// `machine` must outlive it.
@@ -43,8 +43,7 @@ struct StatusWords {
     int exit_code =
         0;  // as of `axguardd run`: that of the stop's cause; 11: the guard shows nothing
 };
-/// @return  nothing where a key is missing or of another type, or phase or cause have a name that
-///          this program does not know
+/// @return  empty if a key is missing or has another type, or the name of phase or cause is unknown
 [[nodiscard]] std::optional<StatusWords> words_of_status(std::string_view line);
 
 }  // namespace axg

@@ -16,11 +16,11 @@ void pause_ms(int wait_ms) noexcept {
     poll(nullptr, 0, wait_ms);
 }
 
-/// False: the bus thread shows nothing.
+/// False: the bus thread provided no view.
 bool take_view(StatusExchange& exchange, const std::atomic<bool>& is_ending,
                LiveView& view) noexcept {
     LiveView old;
-    while (exchange.views.pop(old)) {  // asked for, and given up
+    while (exchange.views.pop(old)) {  // a late view of an earlier request
     }
     exchange.is_wanted.store(true);
     for (int i = 0; i < kViewTries && !is_ending.load(); ++i) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the status thread does: for those who connect it asks the bus thread for a copy of its state
-// and gives it to them as a line. Neither a reader nor a flood of them reaches the bus thread: it
-// looks at one flag a turn, and copies at most once in kViewWaitMs.
+// The status thread: for each client it requests a copy of the bus thread's state and sends it as a
+// line. Clients cannot slow the bus thread down, however many: it reads one flag a turn, and copies
+// at most once in kViewWaitMs.
 #pragma once
 
 #include <atomic>

@@ -173,7 +173,7 @@ bool axg_board_latch(axg_board* board, const axg_board_sample* sample) {
         board->newest_record = (uint8_t)(number % AXG_BOARD_RECORDS);
         record->sample = *sample;
         axg_board_open_record(board, record);
-        // Nothing latched before the change is ever a reason to move after it.
+        // A sample latched before the change never permits motion after it.
         record->is_kept = sample->latched_us >= board->forgotten_us;
         if (board->tool == AXG_BOARD_TOOL_WANTED) {
             board->tool = AXG_BOARD_TOOL_ANNOUNCED;

@@ -82,7 +82,7 @@ typedef enum axg_board_heard {
 // Reason of a rejected frame, in the order of the checks; refused[] counts each.
 typedef enum axg_board_refusal {
     AXG_BOARD_REFUSED_NOTHING = 0,
-    AXG_BOARD_REFUSED_SHAPE,         // known id, wrong length or format
+    AXG_BOARD_REFUSED_SHAPE,         // the id of a permit or hash, wrong length or format
     AXG_BOARD_REFUSED_TWIN_MISSING,  // a plain frame after a plain frame
     AXG_BOARD_REFUSED_TWIN_ALONE,    // an inverted frame without its plain one
     AXG_BOARD_REFUSED_TWIN_LATE,     // more than T after its plain one
@@ -259,10 +259,9 @@ axg_board_motion axg_board_may_move(axg_board* board, uint64_t now_us);
 // Reports that axes start to move, or that all are at rest. Motion without permit latches a stop.
 void axg_board_moves(axg_board* board, bool moves, uint64_t now_us);
 
-// Requests new speed bounds (AXG_BOARD_CAP_ENFORCED). A lower bound takes effect at once and has to
-// be true already, in stops too. A higher bound is granted up to that of the newest permit, and
-// only if that permit counts and no other axis still has to slow down for
-// it.
+// Requests new speed bounds (AXG_BOARD_CAP_ENFORCED). A lower bound is in effect at once: the axes
+// have to obey it already, in stops too. A higher bound is granted up to that of the newest permit,
+// and only if that permit counts and no other axis still has to slow down for it.
 // @return  the bounds to obey from now on
 axg_board_caps axg_board_keeps(axg_board* board, const axg_board_caps* wanted, uint64_t now_us);
 

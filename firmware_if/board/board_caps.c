@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The enforced cap: a permit orders, a sample acknowledges, and a permit counts only where the
-// axes were no faster since its sample than what the guard could take for granted. Rules (i) to
-// (iv): docs/reference/board.md.
+// The enforced cap: a permit orders, a sample acknowledges, and a permit counts only if the axes
+// were no faster since its sample than the guard's proof assumes. Rules (i) to (iv):
+// docs/reference/board.md.
 #include "firmware_if/board/board_detail.h"
 
 axg_board_caps axg_board_equal_caps(uint8_t cap) {
@@ -50,7 +50,7 @@ static void axg_board_take_ack(axg_board* board, const axg_board_permit* permit)
 }
 
 void axg_board_open_record(axg_board* board, axg_board_record* record) {
-    // Between a stamp and this call a bound may have fallen: then what it was is not known.
+    // If a bound changed between the stamp and this call, the old value is lost: assumes rapid.
     const bool is_known = record->sample.latched_us >= board->keeps_us;
     record->highest = is_known ? board->keeps : axg_board_equal_caps((uint8_t)AXG_BOARD_CAP_NONE);
     record->has_ack = axg_board_may_name(board, record);
@@ -91,10 +91,10 @@ static void axg_board_raise(axg_board* board, uint32_t group, uint8_t cap) {
         uint8_t* const highest = &board->records[i].highest.of[group];
         *highest = (cap > *highest) ? cap : *highest;
     }
-    axg_board_take_ack(board, &board->last);  // at once: the one before orders less than is kept
+    axg_board_take_ack(board, &board->last);  // at once: the one before orders less than this
 }
 
-// Of a group without an axis nothing is kept: it is never what an acknowledgement waits for.
+// The bound of a group without an axis is 0, so that no acknowledgement waits for it.
 static uint8_t axg_board_wanted(const axg_board* board, const axg_board_caps* wanted,
                                 uint32_t group) {
     return (group < board->options.axis_count) ? wanted->of[group] : 0U;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the files of this folder share. Nobody else includes it.
+// Shared by the files of this folder. No other code includes it.
 #ifndef AXG_BOARD_DETAIL_H
 #define AXG_BOARD_DETAIL_H
 
 #include "firmware_if/board/axguard_board.h"
 
-#define AXG_BOARD_ANSWER 0xC5A3U  // the engine's answer to its known question
+#define AXG_BOARD_ANSWER 0xC5A3U  // signature of the engine's known-answer test
 #define AXG_BOARD_CRC16_START 0xFFFFU
 #define AXG_BOARD_CRC8_START 0xFFU
 #define AXG_BOARD_MODE_JOG 3U
@@ -44,7 +44,7 @@ bool axg_board_is_below(const axg_board_caps* lower, const axg_board_caps* upper
 void axg_board_open_record(axg_board* board, axg_board_record* record);
 // Whether the proof of a permit for this record holds for the speeds since its latch.
 bool axg_board_is_covered(const axg_board_record* record, const axg_board_caps* caps);
-// Lets the samples name the newest permit whose caps are kept.
+// Lets the samples name the ordered permit if all bounds are within its caps.
 void axg_board_acknowledge(axg_board* board);
 
 #endif

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the board sends. Byte by byte: docs/reference/board.md and docs/reference/protocol.md.
+// Frames of the board. Byte by byte: docs/reference/board.md and docs/reference/protocol.md.
 #include "firmware_if/board/board_detail.h"
 
 #define AXG_BOARD_TURN_COUNTS 3600000  // 360 deg at 0.0001 deg

@@ -95,8 +95,8 @@ static axg_board_refusal axg_board_judge(axg_board* board, const axg_board_recor
     return why;
 }
 
-// A usable permit: its order is heard, its sample is the newest; whether it counts is asked of its
-// caps.
+// Uses a permit: stores its order, and its sample as the newest echo. It counts only if its proof
+// covers the speeds since its sample.
 static axg_board_heard axg_board_use(axg_board* board, const axg_board_record* record,
                                      const axg_board_permit* permit) {
     axg_board_heard heard = AXG_BOARD_HEARD_PERMIT;

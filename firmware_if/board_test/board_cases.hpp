@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a board is put to, one fault a case, and every rule of docs/reference/board.md that a case
-// or a watch over the whole test judges. Data: who plays it is board_player.hpp.
+// Test cases of a board, one fault a case, and every rule of docs/reference/board.md that a case or
+// a watch over the whole test judges. Data only: board_player.hpp plays it.
 #pragma once
 
 #include <cstdint>
@@ -24,14 +24,14 @@ enum class CaseEvent : std::uint8_t {
     other_hash,
 };
 
-/// What the board must then do.
+/// Reaction that the board must then show.
 enum class CaseDemand : std::uint8_t {
     brakes_at_end = 0,  // from the end of the last good permit
     brakes_at_once,     // from the event
     rests,              // until the permits are good again
     goes_on,
     slows,  // below the cap, and acknowledges it
-    holds,  // stands under cap 0, and goes on without a person
+    holds,  // rests under cap 0, and continues without a person
 };
 
 enum class CaseNeed : std::uint8_t { nothing = 0, jog, cap, hashes, more_samples, samples_above };
@@ -51,7 +51,7 @@ struct BoardCase {
 
 /// In the order in which they are played; the first two are played whatever is chosen.
 [[nodiscard]] std::span<const BoardCase> board_cases() noexcept;
-inline constexpr std::size_t kFirstCases = 2;  // run and lapse: what the others build upon
+inline constexpr std::size_t kFirstCases = 2;  // run and lapse: the others depend on them
 
 /// Judged in every case, or by no case.
 struct WatchedRule {
@@ -74,7 +74,7 @@ enum class Watched : std::uint8_t {
 };
 [[nodiscard]] const WatchedRule& watched_rule(Watched watched) noexcept;
 
-/// What no frame shows on a bench.
+/// A rule that no frame shows on a bench.
 struct UnseenRule {
     const char* name;
     int rule;

@@ -37,7 +37,7 @@ BoardPlayer::BoardPlayer(const Machine& machine, const BoardTestOptions& options
     choose_cases();
 }
 
-/// Cases that the machine, or the person, has no use for are findings at once.
+/// Cases that do not apply to the machine, or were not chosen, become findings at once.
 void BoardPlayer::choose_cases() {
     const double period_s = machine_.can.sample_us * 1e-6;
     const double samples = machine_.can.permit_samples.most;
@@ -155,7 +155,7 @@ void BoardPlayer::begin_case() {
     enter(Stage::agree);
 }
 
-/// A case that showed nothing is played again, as often as kAttempts.
+/// Plays a case without a result again, kAttempts times in all.
 void BoardPlayer::next_case() {
     if (!is_judged_ && ++attempts_ < kAttempts) {
         enter(Stage::arm);
@@ -204,7 +204,8 @@ void BoardPlayer::send_good() {
     send_pair(good, true);
 }
 
-/// Of the newest sample. Nothing where the receiver does not know its session.
+/// Sends a permit for the newest sample, or for the older one of the edit. No effect while the
+/// receiver has no session for it.
 void BoardPlayer::send_pair(const PermitEdit& edit, bool is_good) {
     const auto back = static_cast<std::uint8_t>(edit.echo_back % kSyncCounterMax);
     const auto echo = static_cast<std::uint8_t>(
@@ -353,10 +354,10 @@ void BoardPlayer::abandon_listening() {
     }
 }
 
-/// The receiver goes on after each: the test is not over for it.
+/// Acknowledges each fault: receiver and test continue.
 void BoardPlayer::note_fault(const ReceiverEvent& event) {
     if (event.kind == ReceiverEvent::Kind::fault) {
-        // Before the stages too: with a wrong period nothing is judged.
+        // Also while listening: with a wrong period no rule can be judged.
         if (stage_ != Stage::listen || event.fault == ReceiverFault::sync_period) {
             watch_.on_fault(event, receiver_.counters().measured_period_ns);
         } else if (event.severity == Severity::stop) {
@@ -368,7 +369,7 @@ void BoardPlayer::note_fault(const ReceiverEvent& event) {
     }
 }
 
-/// The echo tells when a frame was on the bus.
+/// Uses the echo's time as the time at which the frame was on the bus.
 void BoardPlayer::on_own(const CanFrame& frame) {
     const BoardCase* const one = current();
     const bool is_stop_word =
@@ -387,7 +388,7 @@ void BoardPlayer::on_own(const CanFrame& frame) {
     const bool is_to_move = stage_ == Stage::good || (stage_ == Stage::fault && one != nullptr &&
                                                       one->demand == CaseDemand::goes_on);
     if (is_to_move && frame.id == machine_.can.permit_id + 1) {
-        // The board may have stopped for this computer's sake.
+        // The board may have stopped because this computer was late.
         const std::int64_t end_us = sent_end_us_[static_cast<std::uint8_t>(~frame.data[2])];
         is_late_ =
             is_late_ || frame.time_us >= end_us || (end_us_ != 0 && frame.time_us >= end_us_);

@@ -35,7 +35,7 @@ enum class Outcome : std::uint8_t {
     not_tested = 0,
     passed,
     failed,
-    unclear,  // it was played, and shows nothing
+    unclear,  // played, without a result
 };
 
 struct BoardFinding {
@@ -56,7 +56,7 @@ struct BoardTestResult {
     SyncFigures sync;
 };
 
-/// What the person at the board has to do now.
+/// Present task of the person at the board.
 enum class PersonTask : std::uint8_t { nothing = 0, arm, arm_jog };
 
 class BoardPlayer {
@@ -71,7 +71,7 @@ class BoardPlayer {
     void interrupt(const std::string& why);
     /// The next frame to send now. False: none is due.
     [[nodiscard]] bool take(std::int64_t now_us, CanFrame& out);
-    /// When on_time() or take() has something to do.
+    /// The earliest instant at which on_time() or take() has work to do.
     [[nodiscard]] std::int64_t next_due_us() const noexcept;
 
     /// Why the case `only` cannot be played; empty: it can, or none is chosen.
@@ -83,8 +83,8 @@ class BoardPlayer {
         return case_ < cases_.size() ? cases_[case_] : nullptr;
     }
     [[nodiscard]] bool is_over() const noexcept { return stage_ == Stage::over; }
-    /// Precondition: is_over(). In the order of the table, then what was watched, then what no
-    /// frame shows.
+    /// Precondition: is_over(). Cases in the order of the table, then watched rules, then rules
+    /// that no frame shows.
     [[nodiscard]] BoardTestResult result() const;
 
   private:
@@ -93,7 +93,7 @@ class BoardPlayer {
         arm,      // a person has to
         agree,    // about the hashes
         good,     // until the axes are at a steady speed
-        fault,    // what the case is about
+        fault,    // the fault of the case
         control,  // good again: now it has to move
         settle,   // nothing is sent, until all axes rest
         probe,    // good permits for a stopped board

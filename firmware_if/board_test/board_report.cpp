@@ -18,7 +18,7 @@ namespace axg {
 
 namespace {
 
-/// Rounded down to three digits: a limit that is stated must be kept.
+/// Rounds down to three digits: the board must meet a stated limit.
 double rounded_down(double value) noexcept {
     if (value <= 0) {
         return 0;
@@ -27,8 +27,8 @@ double rounded_down(double value) noexcept {
     return std::floor(value / unit) * unit;
 }
 
-/// As the machine file has it: mm, deg. A figure that no stop depended on is not stated: nothing is
-/// known of it.
+/// In the machine file's units: mm, deg. Leaves out a figure that no stop depended on, because the
+/// test did not measure it.
 struct MeasuredAxis {
     std::uint32_t number = 0;
     std::string stopping, jerk;  // empty: not stated
@@ -51,15 +51,15 @@ MeasuredAxis measured_axis(const Axis& axis, std::uint32_t number, std::span<con
     return {number, shown(deceleration), shown(jerk)};
 }
 
-/// None: no stop was judged.
+/// Empty: no stop was judged.
 std::optional<MeasuredKeys> measured_keys(const Machine& machine, const BoardTestResult& result) {
     if (result.stops.empty()) {
         return std::nullopt;
     }
     // Rounded up to 0.1 ms; then each figure is found with the ones before it.
     const double reaction_s = std::ceil(result.reaction_s * 1e4) * 1e-4;
-    // Positions show a stop as late as they are old: nothing tells reaction and age apart, but the
-    // age that is stated.
+    // Positions show a stop later by their age. The test cannot separate reaction and age, so it
+    // subtracts the least stated age.
     const double board_ms =
         std::max(0.0, reaction_s * 1e3 - machine.can.latched_age.least_us * 1e-3);
     MeasuredKeys out{fmt::format("{:.1f}", std::ceil(board_ms * 10 - 1e-9) / 10),

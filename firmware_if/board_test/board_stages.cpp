@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stages of a case, and what each says of the board.
+// The stages of a case, and the result of each.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -37,7 +37,7 @@ std::uint8_t mask_of(std::uint32_t axis) noexcept {
 
 }  // namespace
 
-/// A board that moves says so, and one that rests does not.
+/// Checks that the board's mode reports motion while axes move, and none while they rest.
 void BoardPlayer::watch_mode() {
     const bool is_steady = stage_ == Stage::good && steady_samples_ > 0;
     const bool is_jog = mode_ == kModeJog;
@@ -57,7 +57,7 @@ void BoardPlayer::step_listen() {
     if (!has_nonce_ || receiver_.state() != ReceiverState::valid || since_us() < kRestUs) {
         return;
     }
-    send_stop(false);  // whatever was armed before: only a person leads out
+    send_stop(false);  // ends any earlier arming: only a person can arm again
     if (record_.rests(kRestUs)) {
         handshake_.begin(now_us_);
         enter(Stage::arm);
@@ -80,12 +80,12 @@ void BoardPlayer::step_arm() {
     }
 }
 
-/// No permits for so long, while a person arms: what moves then is not armed.
+/// Time without permits while a person arms: an axis that moves then moves without arming.
 std::int64_t BoardPlayer::quiet_us() const noexcept {
     return std::min(kQuietUs, options_.person_us_max / 2);
 }
 
-/// From the due instant of this case on.
+/// Watches the rest of the axes from the due instant of this case on.
 void BoardPlayer::begin_rest() {
     const double board_s = std::max(seen_reaction_s(machine_), lapse_s_.value_or(0));
     const double jitter_s = sample_errors(machine_, 0, 0).latch_jitter_s;
@@ -220,7 +220,7 @@ void BoardPlayer::judge_stop(bool is_over_due) {
     const double reaction_s = longest_reaction_s(machine_, stops);
     const bool is_lapse = case_ < kFirstCases;
     const double board_s = seen_reaction_s(machine_);
-    // A board that is too slow in the lapse is so everywhere: other rules are judged by that.
+    // A board that is too slow in the lapse is too slow in every case: judges other rules by that.
     const bool is_slow = lapse_s_.value_or(0) > board_s;
     const double allowed_s =
         is_lapse || !is_slow ? board_s : *lapse_s_ + machine_.can.sample_us * 1e-6;
@@ -346,7 +346,7 @@ void BoardPlayer::step_probe() {
     }
 }
 
-/// After a whole test for all of the time: nothing may move any more.
+/// Sends stop frames for the whole time after a complete test: no axis may move any more.
 void BoardPlayer::step_closing() {
     const bool has_samples =
         !record_.is_empty() &&

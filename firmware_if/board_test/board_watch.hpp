@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rules that a board has to keep the whole time, judged from every frame of it.
+// Rules that a board has to follow the whole time, judged from every frame of it.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ struct WatchedState {
     std::int64_t at_us = 0;  // of the frame that showed it
 };
 
-/// What the board's SYNC looked like from here, the bus and this computer included.
+/// Figures of the board's SYNC as this computer received it, delays of bus and computer included.
 struct SyncFigures {
     std::uint64_t samples = 0;
     double mean_us = 0;        // period
@@ -35,9 +35,9 @@ class BoardWatch {
   public:
     BoardWatch(const Machine& machine, CapPromise cap) noexcept : machine_(machine), cap_(cap) {}
 
-    /// Something that a rule forbids; the first of each is kept.
+    /// Counts a violation of a rule; stores the text of the first one of each rule.
     void fail(Watched watched, std::int64_t at_us, std::string found);
-    /// A rule had its chance.
+    /// Marks the rule as judged: the test included its situation.
     void note(Watched watched) noexcept { state(watched).is_judged = true; }
 
     /// @param measured_period_ns  ReceiverCounters::measured_period_ns
@@ -53,7 +53,7 @@ class BoardWatch {
         return states_[static_cast<std::size_t>(watched)];
     }
     [[nodiscard]] SyncFigures sync() const noexcept;
-    /// Nothing can be judged by such samples.
+    /// Whether the samples are too faulty to judge any rule.
     [[nodiscard]] bool is_unusable() const noexcept {
         return has_wrong_period_ || of(Watched::samples).faults >= kSampleFaultsMax;
     }

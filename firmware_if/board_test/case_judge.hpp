@@ -19,7 +19,7 @@ struct SteadyAxis {
     double speed = 0;  // signed, mm/s or rad/s
 };
 
-/// So long after its end a permit's stop may show in the positions: they have an age, too.
+/// Longest time from the end of a permit until positions show the stop: reaction and their age.
 [[nodiscard]] double seen_reaction_s(const Machine& machine) noexcept;
 
 /// The slowest speed from which a stop shows a reaction: ten times the resolution in t_board.
@@ -34,7 +34,7 @@ struct StopInstant {
     double stamp_s = 0;        // what that may be off
 };
 
-/// Of each steady axis, up to its first rest or the newest sample.
+/// The stop of each steady axis, up to its first rest or the newest sample.
 [[nodiscard]] std::vector<AxisStop> stops_of(const Machine& machine, const MotionRecord& record,
                                              const std::vector<SteadyAxis>& before,
                                              const StopInstant& instant);

@@ -39,7 +39,7 @@ class MotionRecord {
     /// Mean speed from one sample to another, mm/s or rad/s.
     [[nodiscard]] double speed(std::size_t axis, std::uint64_t from,
                                std::uint64_t to) const noexcept;
-    /// Whether every axis kept its place for so long.
+    /// Whether every axis stayed within its resolution for so long.
     [[nodiscard]] bool rests(std::int64_t for_us) const noexcept;
     /// An axis that is farther than its resolution from where it was at this sample; kNoIndex:
     /// none.

@@ -41,7 +41,7 @@ PairFrames frames_of(const CanLayout& can, const Permit2& permit, PairShape shap
     auto [plain, inverted] = encode_any_permit2(can, permit, now_us);
     switch (shape) {
         case PairShape::silence:
-        case PairShape::again:  // whoever keeps the last one sends it
+        case PairShape::again:  // the player sends its stored pair
             break;
         case PairShape::plain_only:
             add(out, plain, now_us);

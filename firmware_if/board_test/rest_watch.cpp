@@ -31,7 +31,7 @@ void RestWatch::begin(std::uint64_t sample, double seconds, double free_s,
     is_cut_ = has_gone_far_ = has_resumed_ = false;
 }
 
-/// What positions say of the speed: a mean over a short time, and what the axis may have gained.
+/// Bounds the speed by means over short times, each with the speed that the axis may have gained.
 void RestWatch::bound(WatchedAxis& watched, std::uint32_t axis, const MotionRecord& record) const {
     const Axis& promised = machine_.axes[axis];
     const double period_s = machine_.can.sample_us * 1e-6, resolution = record.resolution(axis);

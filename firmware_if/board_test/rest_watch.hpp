@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // From the instant at which a stop is due until a person arms: an axis gets no farther than its
-// limits allow, and what came to rest stays there. Every axis, at a steady speed or not.
+// limits allow, and stays where it came to rest. Every axis, at a steady speed or not.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ class RestWatch {
     explicit RestWatch(const Machine& machine) noexcept : machine_(machine) {}
 
     /// The stop is due `seconds` after this sample; braking begins `free_s` later at the latest.
-    /// @param judged  the axes whose way another judge looks at
+    /// @param judged  axes whose stopping distance another part judges
     void begin(std::uint64_t sample, double seconds, double free_s,
                const std::vector<SteadyAxis>& judged);
     void end() noexcept { axes_.clear(); }
@@ -37,7 +37,7 @@ class RestWatch {
   private:
     struct WatchedAxis {
         bool is_bounded = false;
-        double low = 0, high = 0;  // what the stop may reach
+        double low = 0, high = 0;  // that the stop may reach
         double place = 0;          // where it was last seen to stay
         std::uint64_t since = 0;
         bool is_at_rest = false;

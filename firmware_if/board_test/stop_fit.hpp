@@ -10,8 +10,8 @@
 
 namespace axg {
 
-/// What a board promises of a stop: so late, then at least this deceleration, reached with at least
-/// this jerk (kNoJerkLimit: at once).
+/// A board's promise about a stop: after the reaction at least this deceleration, reached with at
+/// least this jerk (kNoJerkLimit: at once).
 struct StopFigures {
     double reaction_s = 0, deceleration = 0, jerk = 0;
 };
@@ -39,7 +39,7 @@ inline constexpr double kNoReaction = 1e9;  // s: the axis did not brake
 [[nodiscard]] double fitted_reaction_s(const AxisStop& stop, double deceleration,
                                        double jerk) noexcept;
 /// The largest deceleration, or jerk, that every stop of this axis fits with the other figures,
-/// which have to fit with this one too. Nothing: four times as much fits, so no stop depended on
+/// which have to fit with this one too. Empty: four times as much fits, so no stop depended on
 /// it.
 [[nodiscard]] std::optional<double> fitted_deceleration(std::span<const AxisStop> stops,
                                                         std::uint32_t axis,

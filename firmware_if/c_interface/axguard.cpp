@@ -34,13 +34,13 @@ static_assert(AXG_AXES_MAX == axg::kAxesMax && AXG_HASH_PARTS == axg::kHashParts
 /// Members in the order in which they are made: each needs those above it.
 struct axg_guard {
     axg_guard(axg::LoadedMachine&& machine, const axg_options& wanted);
-    /// Whether there was memory for everything that the machine and the options ask for.
+    /// Whether there was memory for everything that the machine and the options require.
     [[nodiscard]] bool has_all() const noexcept { return parts.fault().empty(); }
 
     axg::LoadedMachine loaded;
     std::vector<std::string> pairs;  // names
     axg::GuardParts parts;
-    std::string words;  // what is wrong, if something is missing
+    std::string words;  // the fault, if a part is missing
     std::optional<axg::ChosenEngine> chosen;
     std::optional<axg::GuardChain> chain;
     axg::LatchCell forgotten{};  // in the place of a latch that outlives the guard
@@ -109,7 +109,7 @@ axg::ChosenEngine choose(const axg_options& options, const axg::LoadedMachine& l
                               axg::cycle_demand(machine, options.mode == AXG_MODE_STOPPABLE));
 }
 
-/// Whether everything is there that was asked for.
+/// AXG_STATUS_OK if every requested part exists, else the reason.
 axg_status status_of(const axg_guard& guard) noexcept {
     if (!guard.parts.engine) {
         return AXG_STATUS_UNFIT;
@@ -176,7 +176,7 @@ void take_notes(axg_guard& guard) noexcept {
             case LiveNote::Kind::refused:
                 guard.refused = note.words;
                 break;
-            default:  // phases are in the state, lost notes show in nothing else
+            default:  // phases are in the state; lost notes have no field there
                 break;
         }
     }
@@ -388,7 +388,7 @@ axg_status axg_guard_process(axg_guard* guard, int64_t now_us, axg_state* out) {
             guard->last = live_result;
             ++guard->evaluated;
         }
-        // As many fit there as here, and what follows takes them all.
+        // Both queues have one capacity, and the turn below empties that one.
         [[maybe_unused]] const bool is_pushed = guard->queues.results.push(live_result);
     }
     guard->guard->turn(now_us);
@@ -408,7 +408,7 @@ axg_status axg_guard_evaluate(axg_guard* guard) {
     guard->has_query.store(false);
     const axg::LiveEngine live{.machine = guard->loaded.machine, .chain = *guard->chain};
     axg::run_queries(live, guard->queues, [guard](const axg::LiveResult& live_result) {
-        // Full only where nobody processes; then nobody wants it.
+        // Full only if no thread processes; then no thread needs it.
         [[maybe_unused]] const bool is_kept = guard->undated.push(live_result);
     });
     return AXG_STATUS_OK;

@@ -50,7 +50,7 @@ axg_terms board_terms(const Machine& machine, const ConfigurationHashes& hashes)
     const CanLayout& can = machine.can;
     axg_terms out{};
     out.period_us = can.sample_us;
-    // A board needs the sum alone, for H(n).
+    // A board needs only the sum, for H(n).
     out.jitter_us =
         microseconds(machine.guard.latch_jitter_s) + microseconds_up(age_seconds(machine).most);
     out.reaction_us = microseconds(machine.guard.board_reaction_s);

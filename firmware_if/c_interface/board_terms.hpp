@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a board has to know of the machine file, in the types of the C interface.
+// The values of the machine file that a board needs, in the types of the C interface.
 #pragma once
 
 #include "core/machine/configuration_hashes.hpp"

@@ -18,7 +18,7 @@ struct CanFrame {
     bool bit_rate_switch = false;
     bool error_state = false;   // FD: sender is error-passive
     bool sent_by_host = false;  // direction T in a log, MSG_DONTROUTE live
-    std::uint8_t raw_dlc = 0;   // 9..15 when a classical frame said so, else 0
+    std::uint8_t raw_dlc = 0;   // 9..15 if a classical frame has that DLC, else 0
     std::uint8_t length_bytes = 0;
     std::array<std::uint8_t, 64> data{};
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A CAN interface to look at: a socket with no way to send. Whoever holds a listener cannot put a
-// frame on the bus; tests/style/watch_symbols.py also looks for it in the objects.
+// A CAN interface for reading only: its socket has no function to send. The holder of a listener
+// cannot send a frame on the bus; tests/style/watch_symbols.py checks that in the objects too.
 #pragma once
 
 #include <optional>
@@ -19,7 +19,7 @@ class CanListener {
     [[nodiscard]] ReadStatus read(CanArrival& out) noexcept { return wire_.read(out); }
     /// For poll(); readable when `read` has a result.
     [[nodiscard]] int descriptor() const noexcept { return wire_.descriptor(); }
-    /// By the queue of this socket being full, since it was opened.
+    /// Frames dropped because the queue of this socket was full, since it was opened.
     [[nodiscard]] std::uint64_t frames_dropped() const noexcept { return wire_.frames_dropped(); }
 
   private:

@@ -10,8 +10,8 @@
 namespace axg {
 
 enum class SendStatus : std::uint8_t {
-    failed = 0,  // for a reason nobody planned for
-    ok,          // the kernel took it; whether it was on the wire, its echo tells
+    failed = 0,  // for an unexpected reason
+    ok,          // the kernel accepted it; only its echo proves that it was on the wire
     busy,        // the queue is full: try again later
     down,        // the interface is down
     gone,        // the interface was removed

@@ -21,8 +21,8 @@
 namespace axg {
 namespace {
 
-// What the controller may report. Bus errors one by one are left out: a bad cable sends thousands a
-// second, and error-passive and bus-off say the same.
+// Reports of the controller that the socket receives. Single bus errors are left out: a bad cable
+// causes thousands a second, and error-passive and bus-off report it too.
 constexpr can_err_mask_t kErrorClasses =
     CAN_ERR_CRTL | CAN_ERR_TRX | CAN_ERR_ACK | CAN_ERR_BUSOFF | CAN_ERR_RESTARTED;
 
@@ -86,7 +86,7 @@ std::string words(const std::string& interface, const char* what, int error) {
     return interface + ": " + what + ": " + std::strerror(error);
 }
 
-/// Index of an interface that is up and carries what is asked for; 0 and words otherwise.
+/// Index of an interface that is up and carries the requested frames; 0 and `fault` otherwise.
 int find_interface(int socket, const SocketOptions& options, std::string& fault) {
     ifreq request{};
     if (options.interface.empty() || options.interface.size() >= sizeof request.ifr_name) {
@@ -336,9 +336,9 @@ ReadStatus SocketCan::read(CanArrival& out) noexcept {
         clock_us_ = monotonic_us();
         wall_ahead_us_ = clock_us(CLOCK_REALTIME) - clock_us_;
     }
-    // The kernel stamps by the wall clock, which may be set at any moment. What it says is believed
-    // between two instants of the monotonic clock: the queue was empty, and the first of the frames
-    // that came since was here. Within such a burst a frame may so look older than it is.
+    // The kernel stamps by the wall clock, which may be set at any moment. The stamp is clamped to
+    // two instants of the monotonic clock: the last at which the queue was empty, and the one at
+    // which the burst's first frame was read. A frame of a burst may so look older than it is.
     const std::int64_t stamp_us =
         stamps.software_us == 0 ? empty_us_ : stamps.software_us - wall_ahead_us_;
     out.frame.time_us = std::clamp(stamp_us, empty_us_, clock_us_);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A CAN interface of Linux: one raw socket, classical and FD, that never waits. Kernel filters let
-// through the ids of the machine file alone, and only data frames; error frames say what the
-// controller sees; drops of the queue become error frames of the same kind. Times are of
+// through only the ids of the machine file, and only data frames; error frames report what the
+// controller detects; drops of the queue become error frames of the same kind. Times are of
 // CLOCK_MONOTONIC, us. Source: linux/Documentation/networking/can.rst, socket(7).
 #pragma once
 
@@ -27,7 +27,7 @@ struct CanIds {
 struct SocketOptions {
     std::string interface;  // "can0"
     CanIds ids;
-    bool is_fd = false;                     // take flexible frames too
+    bool is_fd = false;                     // receive flexible frames too
     std::int32_t receive_buffer_bytes = 0;  // SO_RCVBUF; 0: the system's
 };
 
@@ -46,10 +46,10 @@ class SocketCan final : public CanTransport {
 
     /// For poll(); readable when `read` has a result.
     [[nodiscard]] int descriptor() const noexcept { return socket_; }
-    /// By the queue of this socket being full, since it was opened.
-    /// What came since the socket was opened, while memory was reserved: old, and with holes where
-    /// the queue was too small for it. A guard that began with it would begin with faults.
+    /// Discards the frames that arrived since the socket was opened, while memory was reserved:
+    /// they are old, with gaps where the queue was full, and a guard would begin with faults.
     void forget() noexcept;
+    /// Frames dropped because the queue of this socket was full, since it was opened.
     [[nodiscard]] std::uint64_t frames_dropped() const noexcept { return dropped_total_; }
 
   private:
@@ -57,14 +57,14 @@ class SocketCan final : public CanTransport {
     [[nodiscard]] ReadStatus report_drops(CanArrival& out) noexcept;
 
     int socket_ = -1;
-    // The queue was empty at the one instant, and a frame was in it at the other; between bursts
-    // the first is taken as early as the last look at the clock.
+    // Instants at which the queue was last empty and had a frame in it; between bursts the first is
+    // as early as the last reading of the clock.
     std::int64_t empty_us_ = 0, clock_us_ = 0;
     std::int64_t wall_ahead_us_ = 0;  // CLOCK_REALTIME less CLOCK_MONOTONIC, at the last burst
     bool is_drained_ = true;
     std::uint32_t dropped_ = 0;     // SO_RXQ_OVFL as last reported, modulo 2^32
-    std::uint32_t unreported_ = 0;  // drops that `read` has not told yet
-    bool forgets_drops_ = false;    // those that the next frame tells of were before it
+    std::uint32_t unreported_ = 0;  // drops that `read` has not reported yet
+    bool forgets_drops_ = false;    // drops reported with the next frame were before it
     std::uint64_t dropped_total_ = 0;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The files that a command line names. An output that is an input too would destroy it, and one
-// that cannot be written would cost the work before it: both are found first.
+// that cannot be written would waste the work before it: checks for both first.
 #pragma once
 
 #include <cstdio>
@@ -17,7 +17,7 @@ struct CommandFiles {
     std::vector<Named> inputs, outputs, folders;
 };
 
-/// Whether every output can be written and is no other file of the command. What is wrong goes to
+/// Whether every output can be written and is no other file of the command. Prints faults on
 /// `messages`.
 [[nodiscard]] bool are_sound(const CommandFiles& files, std::FILE* messages);
 

@@ -73,7 +73,7 @@ bool Option::is_given() const {
 template <class Value>
 Option Command::add_option(const std::string& names, Value& value, const std::string& help) const {
     const Option option(app_->add_option(names, value, help));
-    if constexpr (std::is_unsigned_v<Value>) {  // strtoull() takes -1 for the largest there is
+    if constexpr (std::is_unsigned_v<Value>) {  // strtoull() reads -1 as the largest value
         return option.check([](const std::string& word) {
             return word.find('-') == std::string::npos
                        ? std::string()
@@ -171,7 +171,7 @@ int CommandLine::parse_command(std::vector<std::string> words, const std::string
 }
 
 int CommandLine::parse(std::vector<std::string> words) {
-    std::reverse(words.begin(), words.end());  // as CLI11 takes them
+    std::reverse(words.begin(), words.end());  // as CLI11 requires
     try {
         app_->parse(words);
     } catch (const CLI::ParseError& error) {

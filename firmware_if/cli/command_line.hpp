@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A program's commands and their options. What parses them, CLI11, costs seconds of compile time
-// wherever it is included: only command_line.cpp includes it.
+// A program's commands and their options. CLI11 parses them. It costs seconds of compile time in
+// every file that includes it: only command_line.cpp does.
 #pragma once
 
 #include <functional>
@@ -34,7 +34,7 @@ class Option {
     Option shows_default() const;
     /// May be given more than once, with one value each time.
     Option repeatable() const;
-    /// Takes several values at once, with this between them.
+    /// Accepts several values at once, with this between them.
     Option separated_by(char separator) const;
 
     /// After parsing.
@@ -56,10 +56,10 @@ class Command {
     template <class Value>
     Option add_option(const std::string& names, Value& value, const std::string& help) const;
     Option add_flag(const std::string& names, bool& value, const std::string& help) const;
-    /// A flag that takes a word only as --name=WORD.
+    /// A flag that accepts a word only as --name=WORD.
     /// @param names  "--name{WORD}" with the word of a bare --name
     Option add_flag(const std::string& names, std::string& value, const std::string& help) const;
-    // Options that name files. The action only runs once every name has been tried.
+    // Options that name files. The action runs only after every name was checked.
     Option add_input(const std::string& names, std::string& path, const std::string& help) const;
     Option add_output(const std::string& names, std::string& path, const std::string& help) const;
     Option add_output_folder(const std::string& names, std::string& path,
@@ -79,7 +79,7 @@ class Command {
     std::shared_ptr<CommandFiles> files_;
 };
 
-/// What a program is called in its help.
+/// Title of a program in its help.
 struct ProgramTitle {
     std::string name, purpose, version;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The text of a JSON document, the same for every command. For files named NAME_json.cpp, which
-// alone include nlohmann/json.hpp: it takes seconds to compile.
+// The text of a JSON document, the same for every command. For files named NAME_json.cpp: only
+// these include nlohmann/json.hpp, which needs seconds to compile.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a program ends with whose guard has stopped, the live guard and the replay of its black box,
+// Exit code of a program whose guard has stopped (the live guard and the replay of its black box),
 // or whose engine may not run.
 #pragma once
 

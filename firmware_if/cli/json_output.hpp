@@ -12,16 +12,16 @@ class Command;
 struct CommandFiles;
 
 struct JsonOutput {
-    std::string target;                           // empty: not asked for; "-": stdout; else a file
+    std::string target;                           // empty: none; "-": stdout; else a file
     std::shared_ptr<const CommandFiles> files{};  // of the command; null: no other output
 
     [[nodiscard]] bool is_wanted() const noexcept { return !target.empty(); }
-    /// Where a command's words for people go: stderr while a result has stdout for itself.
+    /// Stream for a command's text: stderr while a result goes to stdout, else stdout.
     [[nodiscard]] std::FILE* words() const;
 };
 
-/// Adds --json. `output` must live as long as the parser. Only --json=FILE takes a file: the word
-/// after a bare --json stays what it was.
+/// Adds --json. `output` must live as long as the parser. Only --json=FILE names a file: the word
+/// after a bare --json remains a separate argument.
 void add_json_option(const Command& command, JsonOutput& output);
 
 /// Writes the text of a document if requested. False if it could not be written; the reason

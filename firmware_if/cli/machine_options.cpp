@@ -82,7 +82,7 @@ int load_without_meshes(const MachineOptions& options, Machine& out) {
     for (const ConfigFault& fault : faults) {
         std::fprintf(stderr, "%s\n", to_string(fault).c_str());
     }
-    // What is wrong with a compiled machine ends with the command that mends it.
+    // The faults of a compiled machine already end with the command that corrects them.
     if (!faults.empty() && !is_compiled_name(options.file)) {
         std::fprintf(stderr, "%s", fault_summary(options.file, faults.size()).c_str());
     }

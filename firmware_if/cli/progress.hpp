@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One line on the terminal, now and then, for whatever may take longer than a second: how far it
-// is, how fast, and the time left. Where standard error is no terminal, nothing.
+// One line on the terminal, now and then, for work that may last longer than a second: progress,
+// speed, and the time left. Prints nothing if standard error is no terminal.
 #pragma once
 
 #include <chrono>
@@ -20,8 +20,8 @@ class Progress {
 
     /// Whether a line is due. Cost: a look at the clock; nothing without a terminal.
     [[nodiscard]] bool is_due() const;
-    /// @param machine_s  what was gone through, of machine time
-    /// @param share  of the whole, 0 to 1; 0: not known, and then neither is the time left
+    /// @param machine_s  processed machine time
+    /// @param share  of the whole, 0 to 1; 0: unknown, and then the time left is unknown too
     void show(double machine_s, double share, const std::string& what);
     /// The same of work that has no machine time.
     void show(double share, const std::string& what);

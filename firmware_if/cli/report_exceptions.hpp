@@ -12,8 +12,8 @@
 
 namespace axg {
 
-/// The exit code of a program whose results may still be in the buffer of stdout: a full disk
-/// behind it is known only now.
+/// The exit code of a program whose results may still be in the buffer of stdout: only the flush
+/// here detects a full disk.
 inline int exit_code_of_stdout(const char* program, int exit_code) {
     errno = 0;
     const bool is_flushed = std::fflush(stdout) == 0;

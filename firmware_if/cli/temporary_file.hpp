@@ -13,7 +13,7 @@ namespace axg {
 class TemporaryFile {
   public:
     TemporaryFile() = default;
-    /// Takes over a name that another program writes to. The file need not exist.
+    /// Owns a name that another program writes to. The file need not exist.
     explicit TemporaryFile(std::string path);
     ~TemporaryFile();
     TemporaryFile(TemporaryFile&& other) noexcept;

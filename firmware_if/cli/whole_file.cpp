@@ -23,7 +23,7 @@ bool is_same(const struct stat& a, const struct stat& b) noexcept {
 }
 
 /// The descriptor of stdout or stderr where the name leads there; else -1. Such a file is in use:
-/// it is written on, not replaced. A terminal and /dev/null take a second stream as well.
+/// it is appended to, not replaced. A terminal and /dev/null allow a second stream as well.
 int standard_stream(const std::string& path) {
     if (path == "-" || path == "/dev/stdout") {
         return STDOUT_FILENO;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The results of a program. A file appears under its name when it is complete, or not at all; what
-// is no regular file (a pipe, /dev/null) is written to and never replaced. "-" is stdout.
+// The results of a program. A file appears under its name when it is complete, or not at all; a
+// name of no regular file (a pipe, /dev/null) is written to and never replaced. "-" is stdout.
 #pragma once
 
 #include <cstdio>

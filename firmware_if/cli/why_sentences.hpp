@@ -16,21 +16,21 @@ enum class WhyCause : std::uint8_t {
     halving,     // a larger plan proves it: halving was not finished
     shared,      // by itself it is proven: the lists of the cycle were shared
     capacity,    // a list of the engine was full
-    not_known,   // too little was known of the motion: nothing was queried
+    not_known,   // the motion was not sufficiently determined: no query
     not_proven,  // none of these was found
 };
 [[nodiscard]] const char* to_text(WhyCause cause) noexcept;
 
 struct WhyFacts {
     WhyCause cause = WhyCause::not_proven;
-    std::string a, b;         // the bodies, as a reader knows them
+    std::string a, b;         // names of the bodies for the reader
     bool is_of_stop = true;   // false: of the sampled pose alone
     double available_mm = 0;  // certified lower bound of the distance; 0: none
     double needed_mm = 0;     // at most, by the proof of a stop
     double margin_mm = 0;     // of the pair
 };
 
-/// One or two sentences: what could not be proven; then the distance, where it is about one.
+/// One or two sentences: the missing proof; then the distance, if the cause is about one.
 [[nodiscard]] std::vector<std::string> why_sentences(const WhyFacts& facts);
 
 }  // namespace axg

@@ -9,8 +9,8 @@ namespace axg {
 
 std::size_t black_box_bytes(const Machine& machine) noexcept {
     const AxisFrameSet set = make_frame_set(machine);
-    // A period has the board's frames, SYNC and the look-ahead path among them, two of ours, sent
-    // and heard, a snapshot and its result, and turns of which nothing else was recorded.
+    // Records of a period: the board's frames including SYNC and the look-ahead path, two guard
+    // frames both as sent and as echo, a snapshot and its result, and turns without other records.
     constexpr std::size_t kFrameBytes = 45, kResultBytes = 80, kTurns = 4;
     const std::size_t data_bytes =
         *std::max_element(set.frame_bytes.begin(), set.frame_bytes.end());

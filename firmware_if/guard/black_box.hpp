@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The last seconds as records, in a ring of fixed size that is reserved at the start. Written by
-// the logger alone. The oldest records make room for the newest.
+// Ring of fixed size with the records of the last seconds, reserved at the start. Only the logger
+// writes it. New records replace the oldest.
 #pragma once
 
 #include <array>
@@ -14,9 +14,9 @@
 namespace axg {
 
 inline constexpr std::int64_t kBlackBoxUs =
-    10'000'000;  // what the ring has to hold on a healthy bus
+    10'000'000;  // time that the ring has to cover on a healthy bus
 
-/// Bytes for that, and a quarter more.
+/// Bytes for kBlackBoxUs, and a quarter more.
 [[nodiscard]] std::size_t black_box_bytes(const Machine& machine) noexcept;
 
 class BlackBox {
@@ -24,9 +24,9 @@ class BlackBox {
     explicit BlackBox(std::size_t size_bytes) : bytes_(size_bytes) {}
 
     void add(const BlackBoxEntry& entry) noexcept;
-    /// What is there, oldest first, in two parts.
+    /// All records, oldest first, in two parts.
     [[nodiscard]] std::array<std::span<const std::uint8_t>, 2> records() const noexcept;
-    /// Of the next record.
+    /// Sequence number of the next record.
     [[nodiscard]] std::uint32_t sequence() const noexcept { return sequence_; }
 
   private:

@@ -17,7 +17,7 @@ constexpr std::size_t kHeadBytes = 16, kChecksumBytes = 4;
 static_assert(kBlackBoxRecordBytesMin == kHeadBytes + kChecksumBytes);
 constexpr std::size_t kWordsBytesMax = 96;
 
-/// Little-endian fields one after the other. Room for the longest record is there.
+/// Writes little-endian fields one after the other. `out` has room for the longest record.
 class Writer {
   public:
     explicit Writer(std::span<std::uint8_t> out) noexcept : out_(out) {}
@@ -42,7 +42,7 @@ class Writer {
     std::size_t at_ = 0;
 };
 
-/// The same fields back. Behind the end it reads zeros, and says so.
+/// Reads the same fields. Beyond the end integers are 0 and is_sound() is false.
 class Reader {
   public:
     explicit Reader(std::span<const std::uint8_t> from) noexcept : from_(from) {}
@@ -225,7 +225,7 @@ void read(Reader& in, LiveQuery& query) noexcept {
     in.bytes(std::span(query.caps.since).first(snapshot.axis_count));
 }
 
-/// What the result permits; each is a word of its own on the bus.
+/// Motion that a result permits; each value has its own word on the bus.
 enum class Permitted : std::uint8_t { nothing = 0, motion = 1, jog = 2 };
 
 Permitted permitted_by(const CycleResult& result) noexcept {
@@ -411,7 +411,7 @@ void write(Writer& out, const CyclePlan& plan) noexcept {
     }
 }
 
-/// False: a plan that nobody has. Whoever makes a prover for it reserves memory for its queries.
+/// False: an invalid plan. The limits bound the memory that a prover reserves for its queries.
 bool read(Reader& in, CyclePlan& plan) noexcept {
     constexpr std::uint32_t kQueriesMax = 1U << 20U;
     plan.stages = in.byte();
@@ -478,7 +478,7 @@ BlackBoxStatus decode_black_box_header(std::span<const std::uint8_t> bytes,
 std::size_t encode_black_box_record(const BlackBoxEntry& entry, std::uint32_t sequence,
                                     std::span<std::uint8_t, kBlackBoxRecordBytesMax> out) noexcept {
     Writer writer(out);
-    writer.integer(0, 2);  // the length, when it is known
+    writer.integer(0, 2);  // the length is written at the end
     writer.integer(entry.content.index() + 1, 1);
     writer.integer(0, 1);
     writer.integer(sequence, 4);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a black box holds, record by record, and the bytes of it: each with its length, its sequence
-// and a checksum, so that a reader knows the first one that is damaged. us of the monotonic clock.
+// Records of a black box and their bytes. Each has its length, sequence number and checksum, so
+// that a reader detects the first damaged one. Times: us of the monotonic clock.
 // Bytes: docs/guide/black-box.md.
 #pragma once
 
@@ -28,13 +28,13 @@ struct LostRecords {
     std::uint32_t count = 0;
 };
 
-/// Nothing was left out behind: a dump that does not end with it was cut short.
+/// The end of a complete dump: a dump that does not end with it was cut short.
 struct BlackBoxEnd {};
 
 /// A turn of the bus thread without other records: only its time.
 struct EmptyTurn {};
 
-/// What came to the guard between two turns, from a person or from elsewhere in the process.
+/// A call to the guard between two turns, by a person or another part of the process.
 struct LiveCall {
     enum class Kind : std::uint8_t { arm, reset, report };
     Kind kind = Kind::arm;
@@ -52,9 +52,9 @@ struct BlackBoxEntry {
 };
 using BlackBoxQueue = SpscQueue<BlackBoxEntry, 4096>;
 
-/// Of the whole dump.
+/// Header of the whole dump.
 struct BlackBoxHeader {
-    std::array<char, 64> configuration{};  // SHA-256 in hexadecimal, as `axguard check` says it
+    std::array<char, 64> configuration{};  // SHA-256 in hexadecimal, as `axguard check` prints it
     bool is_stoppable = false;             // contact mode otherwise
     bool accepts_local = false;            // frames of the guard's own host were the board's
     std::int64_t time_us = 0;              // of the dump
@@ -71,12 +71,12 @@ inline constexpr std::size_t kBlackBoxRecordBytesMax = 320;
 
 enum class BlackBoxStatus : std::uint8_t {
     ok = 0,
-    cut_short,     // fewer bytes than it says, or than its kind has
+    cut_short,     // fewer bytes than its length field states, or than its kind has
     bad_magic,     // no black box
     bad_version,   // of another version of the program
-    bad_length,    // not that of its kind
+    bad_length,    // not the length of its kind
     bad_checksum,  // torn or flipped
-    bad_content,   // a value that nobody writes
+    bad_content,   // a value that no encoder writes
 };
 [[nodiscard]] const char* to_text(BlackBoxStatus status) noexcept;
 
@@ -85,7 +85,7 @@ void encode_black_box_header(const BlackBoxHeader& header,
 [[nodiscard]] BlackBoxStatus decode_black_box_header(std::span<const std::uint8_t> bytes,
                                                      BlackBoxHeader& out) noexcept;
 
-/// Bytes written. Of a query its look-ahead path is left out: the frames have it.
+/// Returns the bytes written. Omits the look-ahead path of a query: the frames contain it.
 [[nodiscard]] std::size_t encode_black_box_record(
     const BlackBoxEntry& entry, std::uint32_t sequence,
     std::span<std::uint8_t, kBlackBoxRecordBytesMax> out) noexcept;

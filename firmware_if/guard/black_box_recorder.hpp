@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hands what happens at the bus to the logger's black box: every frame read and sent passes through
-// it, the rest is given to it. What was sent is handed over when the turn ends, so that a stop that
-// leaves before the rest of the turn stands where the replay looks for it. Never waits: where the
-// queue is full, what is lost is counted, and the count is the next record that finds room. No
-// allocation.
+// Passes bus events to the logger's black box: every frame read and sent passes through it, callers
+// add the rest. It records sent frames at the end of the turn, so that a stop sent before the rest
+// of the turn is recorded where the replay expects it. Never waits: when the queue is full, it
+// counts the lost records, and the count is the next record that fits. No allocation.
 #pragma once
 
 #include <array>
@@ -20,10 +19,10 @@ class BlackBoxRecorder final : public CanTransport {
     BlackBoxRecorder(CanTransport& wire, BlackBoxQueue* queue) noexcept
         : wire_(wire), queue_(queue) {}
 
-    /// Stamps what comes from now on.
+    /// Sets the time of all records from now on.
     void set_time(std::int64_t now_us) noexcept { now_us_ = now_us; }
-    /// Every turn leaves a record, so that all of them can be made again at their times: a note is
-    /// none, for notes are made between turns too.
+    /// Every turn writes a record, so that a replay repeats all turns at their times. Notes do not
+    /// count: they are also written between turns.
     void begin_turn(std::int64_t now_us) noexcept {
         now_us_ = now_us;
         has_record_ = false;

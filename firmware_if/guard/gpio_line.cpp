@@ -25,7 +25,7 @@ std::optional<GpioLine> GpioLine::open(const std::string& chip, std::uint32_t li
     gpio_v2_line_request request{};
     request.offsets[0] = line;
     request.num_lines = 1;
-    request.config.flags = GPIO_V2_LINE_FLAG_OUTPUT;  // low, without a word
+    request.config.flags = GPIO_V2_LINE_FLAG_OUTPUT;  // low by default
     std::strncpy(request.consumer, "axguardd", sizeof request.consumer - 1);
     const int status = ioctl(file, GPIO_V2_GET_LINE_IOCTL, &request);
     const int error = errno;
@@ -46,7 +46,7 @@ GpioLine& GpioLine::operator=(GpioLine&& other) noexcept {
 
 GpioLine::~GpioLine() {
     if (descriptor_ >= 0) {
-        // What the line does without an owner is its driver's affair.
+        // The line's driver determines its level without an owner.
         [[maybe_unused]] const bool is_low = set(false);
         close(descriptor_);
     }

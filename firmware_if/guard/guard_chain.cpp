@@ -77,7 +77,8 @@ void GuardChain::evaluate_in_turn(const EvaluationClock& clock) {
     }
 }
 
-/// Permits end with a stop of the board's own, but a board that does not come to rest is stopped.
+/// Whether a missing proof stops: while armed, and in an own stop that began under permits. That
+/// stop ends the permits, but the guard stops a board that does not rest in time (left_limits).
 bool GuardChain::owes_stop(bool is_armed) noexcept {
     const SnapshotStatus status = stop_certificate_->cycle().status;
     has_own_stop_ = status == SnapshotStatus::own_stop
@@ -113,9 +114,9 @@ CycleResult GuardChain::decide(bool ready, bool is_armed) noexcept {
     return result;
 }
 
-/// An engine that no stage of this cycle went to, because the host answered all of them: a GPU
-/// whose clocks fall would make the next launch late, and one that is lost is better found now.
-/// Nothing is decided by it: an engine that is lost proves nothing from then on.
+/// Queries an engine that received no batch in this cycle because the host processed all stages.
+/// The clocks of an idle GPU would fall and delay the next launch; a lost GPU is detected now.
+/// No decision uses the results: a lost engine proves nothing from then on.
 void GuardChain::keep_awake() noexcept {
     if (stop_certificate_->work().batches != 0) {
         return;
@@ -136,7 +137,7 @@ void GuardChain::update_advisories() noexcept {
         }
         return;
     }
-    // What the certificate has left of the plan's queries, one behind the other.
+    // The advisories use, one after the other, the plan's queries that the certificate left.
     std::uint32_t queries =
         queries_of(stop_certificate_->plan()) - stop_certificate_->work().planned_queries;
     if (speed_advisory_ != nullptr) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the engine's thread of the guard runs: queries of a snapshot, engine, decision. No
-// allocation after construction.
+// The work of the guard's engine thread: queries of a snapshot, engine, decision. No allocation
+// after construction.
 #pragma once
 
 #include <array>
@@ -25,7 +25,7 @@ namespace axg {
 /// Monotonic nanoseconds; a test scripts it.
 using NowNs = std::int64_t (*)(void* clock);
 
-/// What to measure with. Without a function nothing is measured.
+/// Clock for measurements. Without a function nothing is measured.
 struct EvaluationClock {
     NowNs now_ns = nullptr;
     void* clock = nullptr;
@@ -44,8 +44,8 @@ struct RefusedCycle {
 // The engine thread copies it.
 static_assert(std::is_trivially_copyable_v<RefusedCycle> && sizeof(RefusedCycle) <= 4096);
 
-/// One cycle is take (a snapshot), evaluate, decide, and when its frames are sent,
-/// update_advisories.
+/// One cycle calls take() with a snapshot, evaluate(), decide(), and after its frames have been
+/// sent update_advisories().
 class GuardChain {
   public:
     /// `machine`, `engine`, `containment_test` and `stop_certificate` must outlive the chain.
@@ -56,9 +56,9 @@ class GuardChain {
                StopCertificate* stop_certificate, SpeedAdvisory* speed_advisory = nullptr,
                MarginAdvisory* margin_advisory = nullptr);
 
-    /// What the receiver made of a frame. A snapshot is kept for the queries, a look-ahead path for
-    /// the certificate.
-    /// @param caps  with a snapshot, of a board that keeps caps
+    /// Stores an event of the receiver: a snapshot for the queries, a look-ahead path for the
+    /// certificate.
+    /// @param caps  with a snapshot of a board that applies caps
     void take(const ReceiverEvent& event, const CapFacts& caps = {}) noexcept;
 
     /// Makes and runs the queries of the last snapshot; the same for the same snapshot, so it may
@@ -67,16 +67,16 @@ class GuardChain {
 
     /// Decision from the results: permit or stop.
     /// @param ready  the receiver trusts its snapshots (VALID)
-    /// @param is_armed  a permit would be sent: what is not proven stops
+    /// @param is_armed  a permit would be sent: a missing proof stops
     [[nodiscard]] CycleResult decide(bool ready, bool is_armed) noexcept;
 
-    /// Queries on for the advisories of the next cycle, with what this one has left, and wakes a
-    /// GPU that it did not query. After its frames have been sent: a permit waits for no advisory.
+    /// Uses the remaining queries of this cycle for the advisories of the next, and wakes a GPU
+    /// that it did not query. Call it after sending the frames: a permit waits for no advisory.
     void update_advisories() noexcept;
 
-    /// CapGuard::ignore: under a trace.
+    /// Calls CapGuard::ignore, for traces.
     void ignore_caps() noexcept { cap_guard_.ignore(); }
-    /// A recorded order, of a run that this chain joins later.
+    /// Sets the recorded order of a run that this chain joins later.
     void set_cap_order(const CapOrder& order) noexcept { cap_guard_.set_order(order); }
 
     [[nodiscard]] const Engine& engine() const noexcept { return engine_; }
@@ -84,21 +84,21 @@ class GuardChain {
     [[nodiscard]] const StopCertificate* stop_certificate() const noexcept {
         return stop_certificate_;
     }
-    /// unproven_pair of the last decision; not known in contact mode and without a pair.
+    /// Returns unproven_pair of the last decision; empty in contact mode and without a pair.
     [[nodiscard]] UnprovenPair unproven(std::uint32_t pair) const noexcept;
-    /// The last decision, which gave no permit. Before update_advisories.
+    /// Returns the last decision, which gave no permit. Call it before update_advisories.
     [[nodiscard]] RefusedCycle refused(const CycleResult& result) const noexcept;
     [[nodiscard]] const MarginAdvisory* margin_advisory() const noexcept {
         return margin_advisory_;
     }
 
-    // Contact mode; empty in the other.
+    // Contact mode; empty in stoppable mode.
     [[nodiscard]] const PairQueries& pair_queries() const noexcept { return pair_queries_; }
-    /// Of the last evaluation: [pair_queries.count + 2], or none where the snapshot is not ok.
+    /// [pair_queries.count + 2] of the last evaluation, or none if the snapshot is not ok.
     [[nodiscard]] std::span<const QueryResult> results() const noexcept;
-    /// Of the last evaluation: [pair_queries.count], or none.
+    /// [pair_queries.count] of the last evaluation, or none.
     [[nodiscard]] std::span<const ContainmentResult> containment_results() const noexcept;
-    /// ns that each of pair_queries().pair took in the last evaluation, with a clock; none where
+    /// Duration in ns of each of pair_queries().pair in the last evaluation, with a clock; none if
     /// all of them are one batch.
     [[nodiscard]] std::span<const std::int64_t> pair_ns() const noexcept;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the guard node reads of the wire, and who gets each frame.
+// The guard node reads frames from the wire and passes each to the part that handles it.
 #include "firmware_if/guard/guard_node.hpp"
 
 namespace axg {
@@ -72,8 +72,8 @@ void GuardNode::on_foreign(const CanFrame& frame, const char* words, GuardFault 
     fail(fault, now_us);
 }
 
-/// Seen on the bus, it dates the sample. Too late by the jitter that every proof supposes, it is a
-/// premise that does not hold: a stop.
+/// The echo of the guard's SYNC dates the sample. A SYNC later than the jitter that every proof
+/// supposes violates a premise: a stop.
 void GuardNode::on_own_sync(const CanFrame& frame, std::int64_t now_us) noexcept {
     if (!is_sync_in_time(sync_, frame.data[0], frame.time_us)) {
         note({.kind = LiveNote::Kind::wire,
@@ -83,7 +83,7 @@ void GuardNode::on_own_sync(const CanFrame& frame, std::int64_t now_us) noexcept
         fail(GuardFault::input, now_us);
     }
     CanFrame sync = frame;
-    sync.sent_by_host = false;  // by us, and by nobody else of this host
+    sync.sent_by_host = false;  // the guard sent it, no other program of this host
     standstill_.on_frame(sync);
     on_receiver(receiver_.on_frame(sync), now_us);
 }
@@ -133,8 +133,8 @@ void GuardNode::on_receiver(const ReceiverEvent& event, std::int64_t now_us) noe
         ++counters_.snapshots;
         period_.follow(event.snapshot.arrived_us,
                        guard_.phase != GuardPhase::armed && guard_.good == 0);
-        // A period is that of one sample. Its own was evaluated, or is lost: this one is of the
-        // next, however late the bus delivered the one before.
+        // A period belongs to one sample. If that sample was evaluated or lost, this one belongs to
+        // the next period, however late the bus delivered the one before.
         const std::int64_t arrived_us = event.snapshot.arrived_us;
         const bool is_over = has_snapshot_
                                  ? period_.may_end(arrived_us)

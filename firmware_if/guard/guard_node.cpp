@@ -9,8 +9,8 @@
 namespace axg {
 namespace {
 
-// The first samples after a start know no speeds, so near pairs are not proven for some of them;
-// and a pair that comes and goes is no reason for a line a period.
+// The first samples after a start have no speeds, so near pairs are not proven for some of them.
+// A pair whose proof comes and goes must not log a line every period.
 constexpr std::int64_t kLogUs = 1'000'000;
 
 constexpr std::uint32_t kPeriodsATurn = 16;  // a longer sleep is a gap, and stops
@@ -34,7 +34,7 @@ bool is_latched(const LatchCell& cell) noexcept {
 
 void set_latch(LatchCell& cell, bool is_latched) noexcept {
     const std::uint64_t word = is_latched ? ~kLatchClear : kLatchClear;
-    // The memory is a file's: another process reads it, which the compiler cannot know.
+    // The memory belongs to a file: another process reads it, which the compiler cannot see.
     std::atomic_ref<std::uint64_t>(cell.word).store(word, std::memory_order_seq_cst);
     std::atomic_ref<std::uint64_t>(cell.inverse).store(~word, std::memory_order_seq_cst);
 }
@@ -99,7 +99,7 @@ GuardNode::GuardNode(const Machine& machine, LiveOptions options, CanTransport& 
     has_begun_ = true;
 }
 
-/// Files are read before this object is made: the self-test is what is left.
+/// Files are read before construction: only the self-test remains.
 void GuardNode::begin(std::int64_t now_us) noexcept {
     on({.kind = GuardEventKind::loaded}, now_us);
     has_passed_ = is_held_ = false;
@@ -136,7 +136,7 @@ std::int64_t GuardNode::next_due_us() const noexcept {
                      handshake_.next_due_us(), next_sync_us(sync_), status_due_us_});
 }
 
-/// The process was held, or had no processor: nothing that it knows of the time between is true.
+/// The process did not run for longer than a permit: its data about that time is invalid.
 void GuardNode::check_gap(std::int64_t now_us) noexcept {
     if (now_us - last_turn_us_ <= times_.permit_us) {
         return;
@@ -163,7 +163,7 @@ void GuardNode::end_period(std::int64_t now_us) noexcept {
 void GuardNode::take_results(std::int64_t now_us) noexcept {
     LiveResult live_result;
     while (queues_.results.pop(live_result)) {
-        end_periods(std::min(live_result.done_us, now_us));  // what ended before the result, ended
+        end_periods(std::min(live_result.done_us, now_us));  // those before the result
         completed_ = live_result.number;
         wire_.add(live_result);
         waiting_since_us_ = now_us;
@@ -212,7 +212,7 @@ void GuardNode::on_result(const LiveResult& live_result, std::int64_t now_us) no
     if (event.kind == GuardEventKind::own_stop && guard_.phase == GuardPhase::armed) {
         note_own_stop();
     }
-    if (!receiver_.is_period_shown()) {  // it is not VALID, so nothing is permitted
+    if (!receiver_.is_period_shown()) {  // then it is not VALID: no permit
         withheld_ =
             result.reason == StopReason::none ? WithheldPermit{.why = Why::period} : withheld_;
         note_period(now_us);
@@ -232,7 +232,7 @@ void GuardNode::on_result(const LiveResult& live_result, std::int64_t now_us) no
     }
 }
 
-/// Once a second while it lasts: a second is more than a right period takes at 1 kHz.
+/// Logs once a second while the period is not shown. At 1 kHz a correct one is shown in less time.
 void GuardNode::note_period(std::int64_t now_us) noexcept {
     if (now_us < next_period_note_us_) {
         return;
@@ -244,8 +244,8 @@ void GuardNode::note_period(std::int64_t now_us) noexcept {
          now_us);
 }
 
-/// Whether an axis moves while the frames say that all stand: then nothing they say is believed
-/// until it rests, and no arming. Said once each time.
+/// Whether an axis moves while the frames report standstill: until it rests no sample counts as
+/// proven, which prevents arming. Logged once each time.
 bool GuardNode::contradicts(std::int64_t now_us) noexcept {
     const std::uint32_t axis = standstill_.contradicted_axis();
     if (axis != contradicted_axis_ && axis != kNoIndex) {
@@ -258,8 +258,8 @@ bool GuardNode::contradicts(std::int64_t now_us) noexcept {
     return axis != kNoIndex;
 }
 
-/// What is not proven before arming is no stop, so nothing else would say which pair it is: logged
-/// when it is another one than before, or when the guard has been ready in between.
+/// Before arming a missing proof does not stop, so no other line names the pair. Logs it if pair or
+/// reason differ from the last line, or if the guard was ready since.
 void GuardNode::log_withheld(const CycleResult& result, std::int64_t now_us) noexcept {
     const bool is_waiting = guard_.phase == GuardPhase::selftest;
     const bool is_known = result.reason == logged_.reason && result.pair == logged_.pair;
@@ -271,7 +271,7 @@ void GuardNode::log_withheld(const CycleResult& result, std::int64_t now_us) noe
     note({.kind = LiveNote::Kind::withheld, .reason = result.reason, .pair = result.pair}, now_us);
 }
 
-/// The self-test has two sides: our engine, and a board that was configured as we were.
+/// The self-test has two sides: our engine, and a board with the same configuration as ours.
 void GuardNode::pass_when_agreed(std::int64_t now_us) noexcept {
     if (has_passed_ && handshake_.has_agreed()) {
         has_passed_ = false;
@@ -279,8 +279,8 @@ void GuardNode::pass_when_agreed(std::int64_t now_us) noexcept {
     }
 }
 
-/// Drives latch as it ends. One that is not sent, for being late or because the queue is full, is a
-/// sample lost: the receiver misses its number.
+/// Drives latch at the end of SYNC. A SYNC that is not sent, because it is late or the queue is
+/// full, is a lost sample: the receiver misses its number.
 void GuardNode::send_sync(std::int64_t now_us) noexcept {
     const std::uint8_t counter = take_sync(sync_, now_us);
     if (counter != 0 &&
@@ -289,7 +289,7 @@ void GuardNode::send_sync(std::int64_t now_us) noexcept {
     }
 }
 
-/// A stop is confirmed while the axes stand, whatever the guard's own receiver says.
+/// A stop is confirmed while the axes are at rest, in any state of the guard's own receiver.
 void GuardNode::check_standstill(std::int64_t now_us) noexcept {
     if (guard_.phase != GuardPhase::stopped) {
         return;
@@ -319,7 +319,7 @@ void GuardNode::submit(LiveQuery::Kind kind, const ReceiverEvent& event,
                                                                  event.samples_lost, age_samples_)
                                            : CapFacts{}};
     if (!queues_.queries.push(query)) {
-        return;  // the engine is so far behind that it is found silent
+        return;  // check_engine() reports an engine that is so far behind
     }
     ++submitted_;
     wire_.add(query);
@@ -330,7 +330,7 @@ void GuardNode::submit(LiveQuery::Kind kind, const ReceiverEvent& event,
     has_submitted_ = true;
 }
 
-/// An engine that says nothing at all is lost, whatever the receiver does.
+/// An engine without any result for longer than a permit is lost, whatever the receiver does.
 void GuardNode::check_engine(std::int64_t now_us) noexcept {
     const bool is_silent = owed_ != completed_ && now_us - waiting_since_us_ > times_.permit_us;
     if (is_silent && !has_reported_engine_) {
@@ -339,7 +339,7 @@ void GuardNode::check_engine(std::int64_t now_us) noexcept {
     has_reported_engine_ = is_silent;
 }
 
-/// A recorder that cannot keep up makes the period a bad one, and too many of those stop.
+/// A recorder that loses records makes the period a bad one, and too many of those stop.
 void GuardNode::check_recorder(std::int64_t now_us) noexcept {
     if (counters_.records_lost != wire_.lost()) {
         counters_.records_lost = wire_.lost();
@@ -369,7 +369,7 @@ GuardOutput GuardNode::on(const GuardEvent& event, std::int64_t now_us) noexcept
     if (output.sends_stop) {
         send_stop(before != GuardPhase::stopped, now_us);
     }
-    if (output.heartbeat != heartbeat_) {  // a change is told at once
+    if (output.heartbeat != heartbeat_) {  // a change is sent at once
         heartbeat_ = output.heartbeat;
         heartbeat_us_ = now_us;
     }
@@ -382,7 +382,7 @@ GuardOutput GuardNode::on(const GuardEvent& event, std::int64_t now_us) noexcept
     return output;
 }
 
-/// Goes before all else: the output line may be slow, and memory of a file may fault.
+/// Runs before all else: the output line may be slow, and memory of a file may fault.
 void GuardNode::send_stop(bool is_first, std::int64_t now_us) noexcept {
     outbox_.put_stop(encode_stop(machine_.can, now_us));
     send_waiting_stop(now_us);
@@ -396,7 +396,7 @@ void GuardNode::send_stop(bool is_first, std::int64_t now_us) noexcept {
     ++counters_.stops;
 }
 
-/// While it is made nothing is sent: the first turn begins with it.
+/// Sends nothing during construction: the first turn begins with it.
 void GuardNode::send_waiting_stop(std::int64_t now_us) noexcept {
     if (has_begun_) {
         outbox_.send_stop(now_us);
@@ -428,7 +428,7 @@ void GuardNode::on_phase(GuardPhase before, std::int64_t now_us) noexcept {
     forget_request(operator_);
     phase_us_ = now_us;
     note({.kind = LiveNote::Kind::phase}, now_us);
-    if (before == GuardPhase::stopped) {  // a person's reset, and nothing else, leads here
+    if (before == GuardPhase::stopped) {  // only a person's reset leads here
         set_latch(latch_, false);
         reason_ = StopReason::none;
         outbox_.put_emergency(encode_emergency(machine_.can, {}, now_us));
@@ -470,7 +470,7 @@ void GuardNode::send(std::int64_t now_us) noexcept {
     }
     ++counters_.send_faults;
     const bool is_removed = sent.status == SendStatus::gone;
-    if (!is_mute_ || is_removed) {  // said once, until a frame gets out again
+    if (!is_mute_ || is_removed) {  // logged once, until a frame is sent again
         is_mute_ = true;
         note({.kind = LiveNote::Kind::wire, .words = format_status(sent.status)}, now_us);
     }
@@ -482,8 +482,8 @@ void GuardNode::send(std::int64_t now_us) noexcept {
     }
 }
 
-/// One edge with each permit keeps the monoflop up: a thread that only lives makes none. A line
-/// that cannot be set is a frame that did not get out.
+/// Each permit makes one edge, which holds the monoflop up: a thread that merely runs makes none.
+/// A line that cannot be set counts as a frame that was not sent.
 void GuardNode::set_line(bool level, std::int64_t now_us) noexcept {
     if (line_ == nullptr || line_level_ == level) {
         return;
@@ -499,7 +499,7 @@ void GuardNode::note(LiveNote entry, std::int64_t now_us) noexcept {
     entry.time_us = now_us;
     entry.phase = guard_.phase;
     entry.cause = guard_.cause;
-    if (entry.kind != LiveNote::Kind::withheld) {  // that one has its own
+    if (entry.kind != LiveNote::Kind::withheld) {  // it has its own reason and pair
         entry.reason = reason_;
         entry.pair = pair_;
     }

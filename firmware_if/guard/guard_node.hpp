@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the thread at the bus does: frames to snapshots, snapshots to the engine's queue, its
-// results to the guard's states, those to frames. Times and faults come in, frames go out; no
-// clock, no thread, no wait, no allocation in it, so that a test drives it with a wire and a
-// counter. States: docs/reference/states.md. What is sent when: docs/reference/axguardd.md.
+// The work of the bus thread: frames to snapshots, snapshots to the engine's queue, its results to
+// the guard's states, states to frames. Callers pass in times and faults. It has no clock, thread,
+// wait or allocation, so that a test drives it with a wire and a counter.
+// States: docs/reference/states.md. Frames and their times: docs/reference/axguardd.md.
 #pragma once
 
 #include <array>
@@ -43,13 +43,13 @@ struct LiveCounters {
     std::uint64_t snapshots = 0, permits = 0, stops = 0;  // permits, stops: handed to the outbox
     std::uint64_t slow = 0;                               // of the permits
     std::uint64_t late = 0;                               // results after the deadline
-    std::uint64_t refused = 0;  // proven, and not used: late, too old, or not the first of a period
+    std::uint64_t refused = 0;  // proven but not used: late, too old, or not the first of a period
     std::uint64_t echoes = 0, send_faults = 0;
     std::uint64_t frames_left = 0;  // turns that left frames for the next
     std::uint64_t notes_lost = 0;
     std::uint64_t records_lost = 0;  // of the black box
-    // Messages of an operator: those that reset or armed, those that were refused, and frames that
-    // are none or out of order.
+    // Messages of an operator that reset or armed, that were refused, and frames that are no
+    // message or out of order.
     std::uint64_t operator_acts = 0, operator_refused = 0, operator_ignored = 0;
 };
 
@@ -58,11 +58,11 @@ struct WithheldPermit {
     enum class Why : std::uint8_t {
         nothing = 0,  // it is proven, and in time
         no_sample,    // none was queried since the start or the last reset
-        not_proven,   // reason and pair say of what
+        not_proven,   // `reason` and `pair` name the missing proof
         late,         // the result came after the deadline
-        motion,       // an axis moves while the frames say that all stand
-        session,      // the board has not said its session
-        period,       // nothing has shown yet that the board's period is can.sample_us to 1 %
+        motion,       // an axis moves while the frames report standstill
+        session,      // the board has not sent its session
+        period,       // no window has shown yet that the board's period is can.sample_us to 1 %
     };
     Why why = Why::no_sample;
     StopReason reason = StopReason::none;
@@ -71,10 +71,10 @@ struct WithheldPermit {
 };
 [[nodiscard]] const char* to_text(WithheldPermit::Why why) noexcept;
 
-/// The latch as two words in memory that outlives the process, so that storing it takes no call.
-/// Only the exact pattern of "clear" is clear. It is stored when a person arms, before the first
-/// permit: a stop of an armed guard writes nothing, so no page fault goes before its frame, and no
-/// death of the process can lose it.
+/// The latch as two words in memory that outlives the process, so that storing it needs no call.
+/// Only the exact pattern of "clear" is clear. The guard stores it when a person arms, before the
+/// first permit. A stop of an armed guard therefore writes nothing: no page fault delays its frame,
+/// and the death of the process cannot lose it.
 struct LatchCell {
     std::uint64_t word = 0, inverse = 0;
 };
@@ -87,20 +87,20 @@ void set_latch(LatchCell& cell, bool is_latched) noexcept;
 struct LiveOptions {
     bool accepts_local = false;          // frames sent by this host are the board's: vcan
     BlackBoxQueue* black_box = nullptr;  // to the black box; null: nothing is recorded
-    ConfigurationHashes hashes{};  // what the board must say as well, where the layout has its id
-    PulseLine* line = nullptr;     // beside the bus; null: there is none
-    // Of a recorded or a simulated motion it is only supposed that a person armed, and when: the
-    // axes may move. Never set where a guard is deployed (style.deployed_symbols).
+    ConfigurationHashes hashes{};        // the board must send the same, if the layout has their id
+    PulseLine* line = nullptr;           // in addition to the bus; null: there is none
+    // For recorded or simulated motion, where a person is only supposed to have armed: the axes may
+    // move at that time. Never set in a deployed guard (style.deployed_symbols).
     bool supposes_arming = false;
-    // The board's period is not judged: of a trace its own was taken, and a simulated board has the
-    // declared one. Never set where a guard is deployed.
+    // Does not judge the board's period: a trace is read with its own period, and a simulated board
+    // has the declared one. Never set in a deployed guard.
     bool ignores_period = false;
-    // can.sync: guard, and SYNC of the guard of then is in the recording: none is sent, and what
-    // comes as an own frame is it. Never set where a guard is deployed.
+    // For a recording with can.sync: guard, which contains the SYNC of its guard: sends none, and
+    // uses the recorded own frame instead. Never set in a deployed guard.
     bool supposes_sync = false;
 };
 
-/// How the guard's own receiver reads.
+/// Options of the guard's own receiver.
 [[nodiscard]] constexpr ReceiverOptions receiver_options(const LiveOptions& options) noexcept {
     return {.refuse_local = !options.accepts_local,
             .period = options.ignores_period ? PeriodUse::ignored : PeriodUse::proven};
@@ -112,27 +112,27 @@ class GuardNode {
     GuardNode(const Machine& machine, LiveOptions options, CanTransport& wire, LiveQueues& queues,
               LatchCell& latch, std::int64_t now_us) noexcept;
 
-    /// Everything that is due. Reads at most kFramesATurn frames.
+    /// Does all work that is due. Reads at most kFramesATurn frames.
     void turn(std::int64_t now_us) noexcept;
     /// When to call again at the latest; before, when the wire or the engine has something.
     [[nodiscard]] std::int64_t next_due_us() const noexcept;
-    /// Whether the last turn submitted a query: its thread is to be woken.
+    /// Whether the last turn submitted a query: the caller has to wake the engine thread.
     [[nodiscard]] bool has_submitted() const noexcept { return has_submitted_; }
 
     // Edges from a person, and faults from elsewhere in the process.
     void arm(std::int64_t now_us) noexcept;
     void reset(std::int64_t now_us) noexcept;
     void report(GuardFault fault, std::int64_t now_us) noexcept;
-    /// The process ends as planned: to have been armed is no stop. One that dies is stopped when it
-    /// comes back.
+    /// Ends the process as planned: clears the latch of an armed guard. After a crash the guard
+    /// starts stopped.
     void end() noexcept;
 
     [[nodiscard]] const Guard& guard() const noexcept { return guard_; }
     [[nodiscard]] const LiveCounters& counters() const noexcept { return counters_; }
     [[nodiscard]] const AxisReceiver& receiver() const noexcept { return receiver_; }
-    /// The interface was removed: nothing can be hoped for without a restart.
+    /// The interface was removed: only a restart can recover it.
     [[nodiscard]] bool is_wire_gone() const noexcept { return is_gone_; }
-    /// Of the newest stop.
+    /// Reason of the newest stop.
     [[nodiscard]] StopReason reason() const noexcept { return reason_; }
     [[nodiscard]] std::uint32_t pair() const noexcept { return pair_; }  // kNoIndex: none
     /// Query whose verdict is the stop in force; 0: there is none, or it has another cause.
@@ -206,7 +206,7 @@ class GuardNode {
     void note(LiveNote entry, std::int64_t now_us) noexcept;
 
     const Machine& machine_;
-    BlackBoxRecorder wire_;  // what it reads and sends is recorded on the way
+    BlackBoxRecorder wire_;  // records the frames that it reads and sends
     LiveQueues& queues_;
     LatchCell& latch_;
     TimeLimits times_;
@@ -218,7 +218,7 @@ class GuardNode {
     Handshake handshake_;
     PeriodClock period_;
     bool has_snapshot_ = false;  // in this period
-    AckLedger ledger_;           // of a board that keeps caps: what its samples name
+    AckLedger ledger_;           // permits that the samples of a board with caps name
     std::uint32_t age_samples_;  // of their positions
     SyncProducer sync_;
     LiveCounters counters_;
@@ -227,38 +227,38 @@ class GuardNode {
     std::int64_t heartbeat_us_ = 0;  // next
     GuardHeartbeat heartbeat_ = GuardHeartbeat::silent;
     std::uint8_t live_counter_ = 0;
-    // Queries are counted; not every kind has a result, and one covers all before it.
+    // Numbers of queries. Not every kind has a result, and one result covers all queries before it.
     std::uint32_t submitted_ = 0, owed_ = 0, completed_ = 0, epoch_ = 0;
     std::int64_t waiting_since_us_ = 0;  // for the engine's next result
     StopReason reason_ = StopReason::none;
     std::uint32_t pair_ = kNoIndex, stop_query_ = 0;
     std::int64_t phase_us_;
     WithheldPermit withheld_;
-    // What kept the guard from being ready when it was last said, and when it may be said next.
+    // The logged cause of not being ready, and the earliest time of the next such line.
     CycleResult logged_{};
     std::int64_t next_log_us_ = 0;
-    std::uint32_t contradicted_axis_ = kNoIndex;  // as it was when that was looked at last
+    std::uint32_t contradicted_axis_ = kNoIndex;  // at the last check
     std::int64_t next_session_note_us_ = 0, next_period_note_us_ = 0;
     Hints hints_;             // of the newest result
     bool has_hints_ = false;  // that was not sent yet
     OperatorDesk operator_;
-    // The next line of its kind: a panel or a board gone wild fills no log.
+    // Earliest time of the next line of each kind: a faulty panel or board cannot fill the log.
     static constexpr std::int64_t kNoteUs = 1'000'000;
     std::array<std::int64_t, kOperatorNotes> operator_note_us_{};
     std::array<std::int64_t, kHashParts> hash_note_us_{};
-    OperatorStatus status_;                   // as it was sent last
-    std::int64_t status_us_, status_due_us_;  // then, and the next
-    bool is_held_ = false;                    // and it was said
+    OperatorStatus status_;                   // the last one sent
+    std::int64_t status_us_, status_due_us_;  // times of the last and of the next one
+    bool is_held_ = false;                    // the last result was held by the cap; logged
     bool has_submitted_ = false, is_down_ = false, is_gone_ = false, reads_more_ = false;
     bool has_reported_engine_ = false;
     bool has_passed_ = false;  // the self-test, since begin
-    bool is_mute_ = false;     // our frames do not get out
-    bool has_begun_ = false;   // and may send
+    bool is_mute_ = false;     // our frames are not sent
+    bool has_begun_ = false;   // construction is over: stops may be sent
     PulseLine* line_;
     bool line_level_ = false;
     bool supposes_arming_;
     // The board stopped by itself under permits, and nobody armed the guard since. While its nonce
-    // is that of then, nobody armed the board either.
+    // is unchanged, nobody armed the board either.
     struct SeenOwnStop {
         bool is_on = false;
         std::optional<std::uint32_t> nonce;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A person's reset and arm, by call and by frames, and the status that tells of them.
+// A person's reset and arm, by call and by frames, and the status that reports them.
 #include <algorithm>
 
 #include "firmware_if/guard/guard_node.hpp"
@@ -65,7 +65,7 @@ void GuardNode::reset(std::int64_t now_us) noexcept {
     }
 }
 
-/// Why that action would have no effect now; none: it would.
+/// The reason why that action would have no effect now; none: it would have one.
 OperatorRefusal GuardNode::hindrance_of(OperatorAction action, std::int64_t now_us) noexcept {
     if (action == OperatorAction::arm) {
         const bool may_move = supposes_arming_ && !own_stop_.is_on;
@@ -121,7 +121,7 @@ void GuardNode::on_operator(const CanFrame& frame, std::int64_t now_us) noexcept
     }
 }
 
-/// One line a second of each kind.
+/// Logs at most one line a second of each kind.
 void GuardNode::note_operator(std::uint32_t kind, const char* words, std::int64_t now_us) noexcept {
     if (now_us < operator_note_us_[kind]) {
         return;
@@ -131,7 +131,7 @@ void GuardNode::note_operator(std::uint32_t kind, const char* words, std::int64_
          now_us);
 }
 
-/// Every 100 ms, and after a change; a change in quick succession waits for its turn.
+/// Every 100 ms, and after a change; at most one every kOperatorStatusUsMin.
 void GuardNode::send_status(std::int64_t now_us) noexcept {
     if (!has_session(machine_.can)) {
         return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The permits of the guard node, in both versions, and what version 2 needs to know for them.
+// The permits of the guard node, in both versions, and the session that version 2 needs.
 #include <algorithm>
 
 #include "firmware_if/guard/guard_node.hpp"
@@ -34,8 +34,8 @@ void GuardNode::send_permit(const LiveResult& live_result, std::int64_t now_us) 
     set_line(!line_level_, now_us);
 }
 
-/// For a board that does not obey the stop frame. Its board checks word and twin alone: a guard
-/// without input has no sample to echo.
+/// For a board that does not obey the stop frame. The board checks only the word and the twin: a
+/// guard without input has no sample to echo.
 void GuardNode::put_stop_word(std::int64_t now_us) noexcept {
     const std::uint8_t echo = std::max<std::uint8_t>(receiver_.newest_sync_counter(), 1);
     const SampleSession session = receiver_.session_of(echo).value_or(SampleSession{});
@@ -49,8 +49,8 @@ void GuardNode::put_stop_word(std::int64_t now_us) noexcept {
                                          now_us));
 }
 
-/// The board waits on its path, with permits and without a stop, for a crawl to be proven. A person
-/// has to know that it may be for ever.
+/// The board waits on its path, with permits and without a stop, until a crawl is proven. Informs
+/// the person, because that may never happen.
 void GuardNode::note_held(const CycleResult& result, std::int64_t now_us) noexcept {
     if (result.is_held && !is_held_) {
         note({.kind = LiveNote::Kind::wire,
@@ -67,8 +67,8 @@ std::optional<std::uint32_t> GuardNode::newest_nonce() const noexcept {
     return session ? std::optional(session->nonce) : std::nullopt;
 }
 
-/// A board that stops by itself latches: a person arms it, which draws a new nonce. Until then
-/// nobody has looked at what may be an encoder that froze.
+/// A board that stops by itself latches: a person arms it, which draws a new nonce. Until then no
+/// person has checked the cause, which may be a frozen encoder.
 void GuardNode::note_own_stop() noexcept {
     own_stop_ = {.is_on = true, .nonce = newest_nonce()};
 }
@@ -78,14 +78,14 @@ bool GuardNode::waits_for_board() const noexcept {
     return own_stop_.is_on && has_session(machine_.can) && (!nonce || nonce == own_stop_.nonce);
 }
 
-/// A permit of version 2 answers for the board's nonce and the sample's lap: without them it would
-/// be refused. Said once a second.
+/// The CRC of a version 2 permit covers the board's nonce and the sample's lap: the board would
+/// refuse a permit without them. Logged once a second.
 bool GuardNode::lacks_session(const LiveResult& live_result, std::int64_t now_us) noexcept {
     if (!has_session(machine_.can)) {
         return false;
     }
     if (receiver_.session_of(live_result.sync_counter)) {
-        next_session_note_us_ = now_us;  // should it end, that is said at once
+        next_session_note_us_ = now_us;  // a missing session is then logged at once
         return false;
     }
     if (now_us >= next_session_note_us_) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The wire of a guard whose process has the bus: frames wait here to be handed over, either way.
+// The wire of a guard whose host program drives the bus: queues frames in both directions.
 #pragma once
 
 #include "firmware_if/can/can_transport.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The engine's side of the live guard's queues (guard_node.hpp): takes the queries, runs the
-// chain, hands the results to whoever sends them on. No clock, no thread, no allocation in it.
+// The engine's side of the live guard's queues (guard_node.hpp): reads the queries, runs the chain
+// and publishes the results. It has no clock, no thread and no allocation.
 #pragma once
 
 #include <cstdint>
@@ -14,20 +14,20 @@ namespace axg {
 struct LiveEngine {
     const Machine& machine;
     GuardChain& chain;
-    EvaluationClock clock{};  // what cycles are measured with, off line
+    EvaluationClock clock{};  // measures cycles, off line
 };
 
-/// Both known answers, through the same engine and the same call as every cycle.
+/// Runs both queries of the known-answer test, with the same engine and call as every cycle.
 [[nodiscard]] bool passes_self_test(const LiveEngine& live) noexcept;
 
 /// Result of the query, without `done_us`.
-/// @param taken  the last query that was taken before
+/// @param taken  number of the last query that was read from the queue before
 [[nodiscard]] LiveResult live_result_of(const LiveEngine& live, const LiveQuery& query,
                                         std::uint32_t taken) noexcept;
 
-/// Everything that waits. Of several snapshots all are noted, and the newest is queried. The
-/// speed cap of the next result is looked for when this one is out: a permit waits for no advisory.
-/// @param publish  takes each LiveResult, dates it, and hands it to the bus
+/// Processes all waiting queries. The chain notes every snapshot and evaluates only the newest.
+/// It updates the advisories after publishing the result: a permit waits for no advisory.
+/// @param publish  receives each LiveResult, dates it, and passes it to the bus thread
 template <class Publish>
 void run_queries(const LiveEngine& live, LiveQueues& queues, Publish&& publish) {
     LiveQuery query, newest;
@@ -49,7 +49,7 @@ void run_queries(const LiveEngine& live, LiveQueues& queues, Publish&& publish) 
     }
     if (has_snapshot) {
         publish(live_result_of(live, newest, query.number));
-        live.chain.update_advisories();  // of what the next permit says besides
+        live.chain.update_advisories();  // for the next permit
     }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which frames of the bus the live guard reads, and which are its own.
+// Ids of the frames that the live guard reads, and of those that only it sends.
 #pragma once
 
 #include <cstdint>
@@ -11,12 +11,12 @@
 namespace axg {
 
 inline constexpr std::uint32_t kLiveIdsMax = kFramesPerSnapshotMax + 10 + kAxesMax;
-/// Every id that the guard reads, its own for their echo included.
+/// Writes every id that the guard reads, including its own ids for their echo.
 /// @return  how many; `out` needs room for kLiveIdsMax
 [[nodiscard]] std::uint32_t live_ids(const Machine& machine, std::span<std::uint32_t> out) noexcept;
-/// Of a frame that no other node may send; the stop is not among them, for anybody may stop.
+/// Whether only the guard may send this id. False for the stop, which every node may send.
 [[nodiscard]] bool is_guard_id(const CanLayout& can, std::uint32_t id) noexcept;
-/// Whatever its length and format, as a board obeys it.
+/// True for every length and format, as a board obeys it.
 [[nodiscard]] bool is_stop_frame(const CanLayout& can, const CanFrame& frame) noexcept;
 
 }  // namespace axg

@@ -20,17 +20,17 @@ struct LiveQuery {
     std::uint32_t number = 0;  // counted up
     std::uint32_t epoch = 0;   // which run since the last reset
     std::uint32_t period = 0;  // of the guard, when it was submitted
-    bool is_armed = false;     // it was
+    bool is_armed = false;     // the guard, when it was submitted
     ReceiverEvent event;       // snapshot, look_ahead
-    CapFacts caps;             // snapshot, of a board that keeps caps
+    CapFacts caps;             // snapshot, of a board that applies caps
 };
 
-/// From the engine's thread: of the newest query that it has taken.
+/// The engine thread's result for its newest query.
 struct LiveResult {
     LiveQuery::Kind kind = LiveQuery::Kind::self_test;
     bool is_passed = false;  // self-test
     std::uint32_t number = 0, epoch = 0, period = 0;
-    std::uint32_t taken = 0;  // the last query that the engine had heard before this
+    std::uint32_t taken = 0;  // the last query that the engine had read before this result
     CycleResult result;
     std::uint8_t sync_counter = 0;
     std::int64_t latched_us = 0, arrived_us = 0, done_us = 0;
@@ -44,9 +44,9 @@ struct LiveNote {
         wire,      // the socket or a frame of ours failed
         refused,   // a person's reset or arm has no effect now
         lost,      // notes were lost: the logger is slow
-        hashes,    // the board has another configuration: words say which part
-        withheld,  // not ready, for a pair is not proven: reason and pair say which
-        motion,    // an axis moves though the frames, or an earlier look, said that it stands
+        hashes,    // the board has another configuration: `words` names the part
+        withheld,  // not ready: `pair` is not proven, for `reason`
+        motion,    // an axis moves though the frames, or an earlier check, reported standstill
         person,    // an operator's frame resets or arms
     };
     Kind kind = Kind::phase;

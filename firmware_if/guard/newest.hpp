@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The newest value of one thread for one other, without a lock: neither can make the other wait,
-// the writer always has room, and the reader misses what was replaced before it looked.
+// the writer always has room, and the reader misses values that were replaced before its call.
 #pragma once
 
 #include <array>

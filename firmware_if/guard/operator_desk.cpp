@@ -6,7 +6,7 @@ namespace {
 
 constexpr std::uint32_t kNonceMask = 0xFFFFFF;
 
-/// Which request a confirmation is of, in time or not.
+/// Checks that a confirmation matches the request and is in time.
 OperatorRefusal judge_confirmation(const OperatorDesk& desk, const OperatorMessage& message,
                                    std::int64_t now_us) noexcept {
     if (desk.asked != message.action || desk.nonce != message.nonce) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Requests and confirmations of reset and arm by operator frames: which request waits, with
-// which nonce, and whether a message acts. Pure: what the guard would say to the action is passed
-// in, and the caller acts. Source: docs/reference/board.md, "An operator's reset and arm".
+// which nonce, and whether a message acts. Pure: the caller passes in the guard's hindrance of the
+// action, and acts. Source: docs/reference/board.md, "An operator's reset and arm".
 #pragma once
 
 #include <cstdint>
@@ -12,10 +12,10 @@ namespace axg {
 
 inline constexpr std::int64_t kOperatorConfirmUs = 5'000'000;  // from the request
 inline constexpr std::int64_t kOperatorStatusUs = 100'000;     // between two statuses, at most
-// A status that changes with every message of a sender gone wild does not keep the bus busy.
+// Least time between two: a faulty sender that changes the status often does not load the bus.
 inline constexpr std::int64_t kOperatorStatusUsMin = 10'000;
 
-// Kinds of lines about messages: one of each refusal, and two of what was ignored.
+// Kinds of lines about messages: one of each refusal, and two of ignored messages.
 inline constexpr std::uint32_t kOperatorNotes = kOperatorRefusals + 2;
 
 struct OperatorDesk {
@@ -28,19 +28,19 @@ struct OperatorDesk {
     OperatorRefusal refusal = OperatorRefusal::none;  // of the last message that was judged
 };
 
-/// What a message came to.
+/// Result of a message.
 enum class OperatorHearing : std::uint8_t {
-    ignored,    // its counter did not advance by 1: nothing but the counter is remembered
+    ignored,    // its counter did not advance by 1: only the counter is stored
     asked,      // a request: a nonce was drawn
     confirmed,  // the caller acts now
-    refused,    // OperatorDesk::refusal says why
+    refused,    // for the reason OperatorDesk::refusal
 };
 
 /// @param hindrance  why the guard would not do that action now; none: it would
 [[nodiscard]] OperatorHearing hear(OperatorDesk& desk, const OperatorMessage& message,
                                    OperatorRefusal hindrance, std::int64_t now_us) noexcept;
 
-/// The phase has changed: a request was for the one before.
+/// Discards the request when the phase has changed: it was for the phase before.
 void forget_request(OperatorDesk& desk) noexcept;
 
 [[nodiscard]] bool has_request(const OperatorDesk& desk, std::int64_t now_us) noexcept;
@@ -49,8 +49,8 @@ void forget_request(OperatorDesk& desk) noexcept;
 [[nodiscard]] OperatorStatus status_of(const OperatorDesk& desk, GuardPhase phase,
                                        std::int64_t now_us) noexcept;
 
-/// 24 bits, never 0 and never `last`. Of the clock, so that a black box draws the same again: it is
-/// against accidents, such as a recording that is played, and no secret.
+/// 24 bits, never 0 and never `last`. Computed from the clock, so that a replay draws the same. It
+/// protects against accidents, such as a recording played on the bus, and is no secret.
 [[nodiscard]] std::uint32_t draw_nonce(std::int64_t now_us, std::uint32_t last) noexcept;
 
 }  // namespace axg

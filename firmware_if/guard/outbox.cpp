@@ -66,7 +66,7 @@ void Outbox::on_echo(const CanFrame& frame) noexcept {
     }
 }
 
-/// kRanks: nothing is waiting, or what waits has to wait on.
+/// kRanks: no frame is waiting, or those that wait have to wait on.
 Outbox::Rank Outbox::next() const noexcept {
     const bool has_stop = slots_[kStop].is_waiting;
     const bool is_in_flight =
@@ -104,7 +104,7 @@ bool Outbox::is_of_stop(Rank rank) const noexcept {
            (is_stop_word_ && (rank == kPlain || rank == kTwin));
 }
 
-/// Nothing old is kept for a bus that works again: whoever wanted it sent decides anew.
+/// Discards all waiting frames: the callers decide anew what to send when the bus works again.
 void Outbox::fail(OutboxResult& result, SendStatus status) noexcept {
     for (Slot& slot : slots_) {
         slot.is_waiting = false;
@@ -114,7 +114,7 @@ void Outbox::fail(OutboxResult& result, SendStatus status) noexcept {
     result.status = status;
 }
 
-/// False: the wire takes no more now.
+/// False: the wire accepts no more frames now.
 bool Outbox::send_one(Rank rank, std::int64_t now_us, OutboxResult& result) noexcept {
     Slot& slot = slots_[rank];
     const SendStatus status = wire_.send(slot.frame);
@@ -135,10 +135,10 @@ bool Outbox::send_one(Rank rank, std::int64_t now_us, OutboxResult& result) noex
     if (rank == kQuickStop && ++quick_next_ < quick_end_) {
         put(kQuickStop, quick_stops_[quick_next_]);
     }
-    if (rank == kPlain || rank == kTwin) {  // a stop may go between those of the stop word
+    if (rank == kPlain || rank == kTwin) {  // a stop may go between the stop word and its twin
         owes_twin_ = rank == kPlain;
     }
-    if (rank == kStop || !is_of_stop(rank)) {  // of the others the stop's echo tells
+    if (rank == kStop || !is_of_stop(rank)) {  // the stop's echo covers the others
         (rank < kEmergency ? urgent_ : background_) = {slot.frame, now_us, true};
     }
     return true;
@@ -160,7 +160,7 @@ OutboxResult Outbox::work(std::int64_t now_us) noexcept {
         const bool has_stop = slots_[kStop].is_waiting;
         const bool has_quick_stop = slots_[kQuickStop].is_waiting;
         fail(result, SendStatus::ok);
-        // They had not been tried: the bus may be there again.
+        // These had not been tried: the bus may work again.
         slots_[kStop].is_waiting = has_stop;
         slots_[kQuickStop].is_waiting = has_quick_stop;
     }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the live guard sends, in order of rank: stop, quick stops of drives, permit and twin,
-// emergency, heartbeat, hashes, status for an operator, hints. Of each half one own frame is in
-// flight until its echo was seen, for a kernel that took a frame may still lose it: the permit and
-// its twin wait for each other, the last five for each other, for on the bus these lose against
-// every axis frame, and a permit must not wait for them. The stop, the quick stops and the word
-// stop wait for nothing; the first two are sent again. A full queue is tried again every 0.1 ms. No
-// allocation, no wait.
+// Frames that the live guard sends, in order of rank: stop, quick stops of drives, permit and twin,
+// emergency, heartbeat, hashes, status for an operator, hints. The kernel may lose a frame that it
+// accepted, so each half has one own frame in flight until its echo is seen: the permit and its
+// twin wait for each other, and so do the last five. On the bus these lose against every axis
+// frame, and a permit must not wait for them. The stop, the quick stops and the word stop wait for
+// no echo; the first two are sent again. A full queue is tried again every 0.1 ms. No allocation,
+// no wait.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ namespace axg {
 
 inline constexpr std::int64_t kSendRetryUs = 100;
 
-/// What came of the frames since the last call.
+/// Result of the frames since the last call.
 struct OutboxResult {
     bool was_heard = false;              // an own frame was seen on the bus
     bool has_failed = false;             // one was refused for too long or not seen in time
@@ -27,18 +27,18 @@ struct OutboxResult {
 
 class Outbox {
   public:
-    /// @param limit_us  a frame must be taken, and then seen, within this
+    /// @param limit_us  longest time until the wire accepts a frame, and then to its echo
     Outbox(CanTransport& wire, std::int64_t limit_us) noexcept : wire_(wire), limit_us_(limit_us) {}
 
-    /// Goes before everything else, and a permit that has not left is withdrawn. Quick stops of an
-    /// earlier stop that have not left are too.
+    /// Goes before everything else. Withdraws a permit and quick stops of an earlier stop that were
+    /// not sent yet.
     void put_stop(const CanFrame& frame) noexcept;
     /// Follows the stop, in the order of the calls; kAxesMax at most, others are not sent.
     void put_quick_stop(const CanFrame& frame) noexcept;
-    /// In the place of a pair that has not begun to leave.
+    /// Replaces a pair of which no frame was sent yet.
     void put_permit(const std::array<CanFrame, 2>& pair) noexcept;
-    /// The pair with the word stop, right after its stop and the quick stops, whose echoes tell of
-    /// the bus: stops that are sent again do not withdraw it.
+    /// The pair with the word stop, right after its stop and the quick stops. Only the stop's echo
+    /// is awaited, and a repeated stop does not withdraw the pair.
     void put_stop_word(const std::array<CanFrame, 2>& pair) noexcept;
     void put_emergency(const CanFrame& frame) noexcept { put(kEmergency, frame); }
     void put_hash(const CanFrame& frame) noexcept { put(kHash, frame); }
@@ -52,7 +52,7 @@ class Outbox {
     void send_stop(std::int64_t now_us) noexcept;
     /// Sends what may be sent now.
     [[nodiscard]] OutboxResult work(std::int64_t now_us) noexcept;
-    /// When `work` has to be called at the latest; INT64_MAX: when something was put or came back.
+    /// Latest time of the next call of `work`; INT64_MAX: when a frame was put or came back.
     [[nodiscard]] std::int64_t next_due_us() const noexcept;
 
   private:
@@ -74,7 +74,7 @@ class Outbox {
         std::int64_t refused_us = 0;  // first time the kernel refused it; 0: not yet
     };
 
-    /// Sent, and not seen yet.
+    /// A frame that was sent, without its echo yet.
     struct Flight {
         CanFrame frame;
         std::int64_t sent_us = 0;
@@ -98,9 +98,9 @@ class Outbox {
     std::uint32_t quick_next_ = 0, quick_end_ = 0;  // those between wait; the slot holds the first
     Flight urgent_, background_;                    // stop and permit; all others
     std::int64_t retry_us_ = 0;
-    OutboxResult untold_;  // of the stop
+    OutboxResult untold_;  // of send_stop(), for the next work()
     bool was_heard_ = false;
-    bool is_stop_word_ = false;  // of the pair that was put last
+    bool is_stop_word_ = false;  // the pair that was put last
     bool owes_twin_ = false;  // the plain frame is out: its twin is due before anything but a stop
 };
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// When a period of the guard ends: an absolute schedule on the monotonic clock that goes on without
-// any frame, and leans towards the board's snapshots so slowly that nobody can hold it up. A
-// snapshot arrives in the middle of what its evaluation leaves of the period: neither its arrival
-// nor its result then falls beside the end.
+// The end of each guard period: an absolute schedule on the monotonic clock. It continues without
+// frames, and moves towards the board's snapshots too slowly for any sender to delay it. Snapshots
+// arrive in the middle of the time that their evaluation leaves of the period, so that neither
+// arrival nor result falls close to its end.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace axg {
 
 class PeriodClock {
   public:
-    /// @param response_us  what an evaluation may take
+    /// @param response_us  longest time of an evaluation
     PeriodClock(std::int64_t period_us, std::int64_t response_us, std::int64_t now_us) noexcept
         : period_us_(period_us),
           slack_us_(std::max<std::int64_t>(0, (period_us - response_us) / 2)),
@@ -20,11 +20,11 @@ class PeriodClock {
 
     [[nodiscard]] std::int64_t next_us() const noexcept { return next_us_; }
     void advance() noexcept { next_us_ += period_us_; }
-    /// After a gap: periods that were slept through are not made up for.
+    /// After a gap: the missed periods are not made up for.
     void restart(std::int64_t now_us) noexcept { next_us_ = now_us + period_us_; }
 
     /// A snapshot was complete at this instant.
-    /// @param may_jump  nothing is permitted yet, and no period was good: no need to lean
+    /// @param may_jump  no permit was issued yet, and no period was good: may move at once
     void follow(std::int64_t arrived_us, bool may_jump) noexcept {
         std::int64_t off_us = (arrived_us - slack_us_ - next_us_) % period_us_;
         off_us += off_us < -period_us_ / 2 ? period_us_ : 0;
@@ -34,14 +34,14 @@ class PeriodClock {
         next_us_ += jumps ? off_us : std::clamp(off_us / 4, -most_us, most_us);
     }
 
-    /// By one that comes before the end. Never twice in a row: the end would run away from the
-    /// clock, and what is missing would be missed late.
+    /// Whether a snapshot before the end may end the period. Never twice in a row: the end would
+    /// run away from the clock, and a missing snapshot would be detected late.
     [[nodiscard]] bool may_end(std::int64_t arrived_us) const noexcept {
         return next_us_ - arrived_us < period_us_;
     }
 
-    /// It is nearer to where snapshots are expected in the next period than in this one: after a
-    /// lost one, and where the bus has less to carry, the next may be complete before its period.
+    /// The arrival is nearer to the one expected in the next period than to that in this one. After
+    /// a loss, or with less load on the bus, a snapshot may be complete before its period.
     [[nodiscard]] bool is_of_next(std::int64_t arrived_us) const noexcept {
         return next_us_ - arrived_us < period_us_ / 2 - slack_us_;
     }

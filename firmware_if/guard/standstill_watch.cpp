@@ -59,7 +59,7 @@ void StandstillWatch::on_frame(const CanFrame& frame) noexcept {
             note_path(event.look_ahead);
             break;
         case ReceiverEvent::Kind::snapshot:
-            // Before VALID no heartbeat was heard, and samples may be counted anew by the clock.
+            // Before VALID the heartbeat may be missing, and the clock may count samples anew.
             if (event.state == ReceiverState::valid) {
                 if (event.snapshot.mode != kModeStandstill) {
                     said_since_ = event.snapshot.sample + 1;
@@ -97,7 +97,7 @@ void StandstillWatch::note_path(const PathPoints& points) noexcept {
     }
 }
 
-/// A path that has ended says nothing about now. Its frame may come after those of its sample.
+/// A path that has ended is no evidence of rest now. Its frame may come after those of its sample.
 bool StandstillWatch::has_still_path(std::uint64_t sample) const noexcept {
     return look_ahead_samples_ == 0 || (is_path_still_ && path_.sample + rules_.gap_samples_max >=
                                                               sample + look_ahead_samples_);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether the axes are at rest, from the frames of the bus. It has its own receiver, which
-// acknowledges its faults itself: that of the guard may have given up, and the machine stands all
-// the same. No clock, no allocation. Source: docs/reference/states.md, "Standstill".
+// Whether the axes are at rest, from the frames of the bus. It uses its own receiver and
+// acknowledges its faults: the guard's receiver may be INVALID while the machine is at rest.
+// No clock, no allocation. Source: docs/reference/states.md, "Standstill".
 #pragma once
 
 #include <cstdint>
@@ -21,18 +21,18 @@ namespace axg {
 
 class StandstillWatch {
   public:
-    /// @param after_us  what was latched up to this instant does not count
+    /// @param after_us  samples latched up to this instant do not count
     StandstillWatch(const Machine& machine, ReceiverOptions options, const StandstillRules& rules,
                     std::int64_t after_us) noexcept;
 
-    /// A stop: only what is latched after it counts.
+    /// Begins at a stop: only samples latched after it count.
     void begin(std::int64_t after_us) noexcept;
     /// Every frame of the bus, in order of arrival.
     void on_frame(const CanFrame& frame) noexcept;
     [[nodiscard]] bool stands(std::int64_t now_us) const noexcept {
         return axg::stands(state_, rules_, now_us);
     }
-    /// Any axis that moved in the window; kNoIndex: none, or nothing is known.
+    /// Any axis that moved in the window; kNoIndex: none, or there is no sample.
     [[nodiscard]] std::uint32_t moving_axis() const noexcept {
         return axg::moving_axis(state_, rules_);
     }

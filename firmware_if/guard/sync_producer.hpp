@@ -13,7 +13,7 @@
 namespace axg {
 
 struct SyncProducer {
-    std::int64_t period_us = 0;  // 0: somebody else is the producer
+    std::int64_t period_us = 0;  // 0: another node is the producer
     std::int64_t jitter_us = 0;  // SYNC ends at most so long after its instant of the grid
     std::int64_t due_us = 0;     // the next instant of the grid
     std::uint64_t number = 0;    // its number
@@ -34,8 +34,8 @@ struct SyncProducer {
     return sync.period_us == 0 ? INT64_MAX : sync.due_us;
 }
 
-/// The counter of a SYNC to be sent now; 0: none. Half of the jitter is for whoever calls late, the
-/// rest is for the bus: what is later is left out, and its number with it.
+/// The counter of a SYNC to be sent now; 0: none. Half of the jitter is for late calls, the rest is
+/// for the bus. A SYNC that would be later is skipped together with its number.
 [[nodiscard]] constexpr std::uint8_t take_sync(SyncProducer& sync, std::int64_t now_us) noexcept {
     if (sync.period_us == 0 || now_us < sync.due_us) {
         return 0;

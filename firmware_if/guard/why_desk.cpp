@@ -6,7 +6,7 @@
 namespace axg {
 namespace {
 
-/// Of the reasons that are about a pair those that more distance would answer.
+/// Whether more distance between the pair would remove this reason.
 bool is_about_distance(StopReason reason) noexcept {
     return reason == StopReason::contact || reason == StopReason::predicted ||
            reason == StopReason::capacity;
@@ -54,7 +54,7 @@ void WhyDesk::note(const LiveResult& live_result, const GuardChain& chain) noexc
         return;
     }
     const CycleResult& result = live_result.result;
-    // Of several in a row the first is what the guard stopped by; after a reset that begins anew.
+    // The first of several stops in a row is the one that the guard obeyed; a reset ends the row.
     const bool goes_on = was_stop_ && live_result.epoch == stop_epoch_;
     was_stop_ = result.is_stop;
     stop_epoch_ = live_result.epoch;
@@ -93,7 +93,7 @@ GuardWhy WhyDesk::why(std::uint32_t stop, const WithheldPermit& withheld) noexce
         out.stop = why_of(known_stop_);
     }
     const RefusedCycle& newest = known_withheld_.cycle;
-    // The cycles go on while the view is read: one that is newer and about the same is as good.
+    // Cycles continue during this call: a newer one with the same pair and reason will do.
     const bool is_same = withheld.why == WithheldPermit::Why::not_proven &&
                          withheld.pair != kNoIndex && newest.pair == withheld.pair &&
                          newest.reason == withheld.reason;

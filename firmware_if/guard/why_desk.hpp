@@ -27,12 +27,12 @@ struct PairWhy {
     bool is_jog = false;            // need.margin_mm is the floor of the jog
     PairDistances distances;
 };
-/// Nothing: not about the distance of a pair, or not known.
+/// Empty: not about the distance of a pair, or not available.
 struct GuardWhy {
     std::optional<PairWhy> stop, withheld;
 };
 
-/// Nothing: the cycle is not about the distance of a pair, or too little was known of the motion.
+/// Empty: the cycle is not about the distance of a pair, or had too little data on the motion.
 /// @param room  for the queries of a pose
 [[nodiscard]] std::optional<PairWhy> pair_why(const Machine& machine, const Engine& engine,
                                               const RefusedCycle& cycle,
@@ -41,7 +41,7 @@ struct GuardWhy {
 class WhyDesk {
   public:
     /// `machine` must outlive it, and so must `engine`, which no other thread may use.
-    /// @param engine  without a function nothing is known
+    /// @param engine  without a function every result is empty
     WhyDesk(const Machine& machine, Engine engine);
 
     /// The engine thread, when the result is out. No allocation.
@@ -54,7 +54,7 @@ class WhyDesk {
     }
 
     /// The status thread. No allocation.
-    /// @param stop  as the bus thread has set it
+    /// @param stop  the query passed to set_stop()
     [[nodiscard]] GuardWhy why(std::uint32_t stop, const WithheldPermit& withheld) noexcept;
 
   private:
@@ -71,7 +71,7 @@ class WhyDesk {
     Engine engine_;
     Newest<RefusedCycle> stops_, withheld_;
     std::atomic<std::uint32_t> stop_in_force_{0};
-    // The engine thread's: of the result before, and the cycle that it wrote last as a stop.
+    // The engine thread's: the result before, and the query that it wrote last as a stop.
     bool was_stop_ = false;
     std::uint32_t stop_epoch_ = 0, written_stop_ = 0;
     // The status thread's.

@@ -12,7 +12,7 @@
 #include <unistd.h>
 
 #define ASK_US 50000     // between two messages of a panel
-#define HEARD_US 500000  // the guard says its status every 100 ms
+#define HEARD_US 500000  // the guard sends its status every 100 ms
 #define PRESSED_US 5000000
 
 static bool fail(axg_bus* bus, char* fault, unsigned fault_bytes, const char* interface,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A guard on another computer: samples leave as the frames of a board over SocketCAN, the guard's
 // frames come in, and a person's one act resets and arms it by the frames of a panel
-// (docs/reference/board.md). Nothing in here knows HAL.
+// (docs/reference/board.md). This file does not use HAL.
 #ifndef AXG_AXGUARD_BUS_H
 #define AXG_AXGUARD_BUS_H
 
@@ -14,7 +14,7 @@
 typedef struct axg_bus {
     int socket;
     uint32_t operator_in_id, operator_out_id;
-    axg_operator_status status;  // of the guard, as it last said
+    axg_operator_status status;  // of the guard, as last received
     bool has_status;
     int64_t status_us, asked_us;
     uint8_t counter;
@@ -23,19 +23,19 @@ typedef struct axg_bus {
 } axg_bus;
 
 // Opens the interface; the kernel passes only the guard's frames.
-// @return  false: `fault` says why, and what to do
+// @return  false: the reason and the remedy are in `fault`
 bool axg_bus_open(axg_bus* bus, const char* interface, const axg_terms* terms, char* fault,
                   unsigned fault_bytes);
 // @return  false: the frame is not on its way, because the queue is full or the interface gone
 bool axg_bus_send(const axg_bus* bus, const axg_frame* frame);
-// The next frame of the guard; frames of its status are taken here and not returned.
-// @return  false: none is there
+// Reads the next frame of the guard; stores its status frames instead of returning them.
+// @return  false: no frame is available
 bool axg_bus_receive(axg_bus* bus, int64_t now_us, axg_frame* out);
 // A person arms: within the next five seconds the guard is reset, where it is stopped, and armed.
 void axg_bus_press(axg_bus* bus, int64_t now_us);
-// Sends what is due of that.
+// Sends the frames of that act that are due.
 void axg_bus_arm(axg_bus* bus, int64_t now_us);
-// Of the guard, if it said so within the last half second; stopped otherwise.
+// The guard's phase from a status of the last half second; without one, stopped.
 axg_phase axg_bus_phase(const axg_bus* bus, int64_t now_us);
 void axg_bus_close(axg_bus* bus);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// HAL component, userspace: takes the sample of every servo period from axguard_stop, hands it to
-// the guard (libaxguard) in this process, and hands the guard's frames back. Killed, it takes every
-// later permit with it: the realtime component counts the last one down by itself.
+// HAL component, userspace: passes the sample of every servo period from axguard_stop to the guard
+// (libaxguard) in this process, and the guard's frames back. If it is killed, no later permit
+// arrives: the realtime component counts the last one down by itself.
 // With --bus the guard is axguardd on another computer: samples leave as frames, its frames come
 // in. Usage: loadusr -W axguard-hal MACHINE.yaml [--mesh-root DIR] [--contact] [--simulation]
 // [--bus CAN]
@@ -213,7 +213,7 @@ static axg_status cycle(host* host) {
     return AXG_STATUS_OK;
 }
 
-// What came from the guard on the bus, and what a person wants of it.
+// Forwards the guard's frames from the bus, sends a person's orders, and updates the phase.
 static void exchange(host* host) {
     const int64_t host_us = host_ns() / 1000;
     axg_frame frame;
@@ -316,7 +316,7 @@ static bool make_guard(host* host, int count, char** words) {
             host->is_simulation = true;
         } else if (strcmp(words[i], "--bus") == 0 && i + 1 < count) {
             host->interface = words[++i];
-            options.engine = AXG_ENGINE_CPU;  // it only says what the machine file has
+            options.engine = AXG_ENGINE_CPU;  // only returns the values of the machine file
         } else if (words[i][0] != '-' && options.machine_file == NULL) {
             options.machine_file = words[i];
         } else {
@@ -445,7 +445,7 @@ int main(int count, char** words) {
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
     host.bus.socket = -1;
-    host.state.proof.clearance_mm = -1;  // a guard on the bus does not say it
+    host.state.proof.clearance_mm = -1;  // a guard on the bus does not send it
     if (!make_guard(&host, count, words)) {
         return 1;
     }

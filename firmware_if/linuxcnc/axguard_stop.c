@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// HAL component, realtime: stands between joint.N.motor-pos-cmd and the drives. While the board
-// library says that the axes may move, each joint's command passes. When the permit has ended, each
-// joint is brought to rest by its own ramp, whoever else is alive or dead, and the E-stop chain is
+// HAL component, realtime, between joint.N.motor-pos-cmd and the drives. While the board library
+// permits the axes to move, each joint's command passes. When the permit has ended, each joint is
+// brought to rest by its own ramp, even if no other process runs, and the E-stop chain is
 // opened. Time is counted in servo periods, so that nothing but this function moves the end.
 // Pins and promises: docs/reference/linuxcnc.md.
 #include <hal.h>
@@ -71,8 +71,8 @@ typedef struct stop_state {
     uint16_t tool;
     bool is_jog, jogs_down;  // as the samples report it
     int jog_joint;
-    uint64_t done;  // sample that was answered last
-    bool waits;     // simulation-wait-us: somebody answers
+    uint64_t done;  // last sample with all replies received
+    bool waits;     // simulation-wait-us: a guard replies
     uint32_t ramp_periods;
     int64_t clock_ns;  // of the host, when this period began
     axg_period period;
@@ -200,7 +200,7 @@ static void wait_for_the_guard(void) {
         }
     }
     if (limit_ns != 0 && waited_ns >= limit_ns) {
-        state.waits = false;  // nobody answers any more, until somebody does
+        state.waits = false;  // no guard replies: wait again after a reply
         ++*pins->unheard;
     }
 }
@@ -230,8 +230,8 @@ static void arm(void) {
     }
 }
 
-// A person selects one joint and one way, at rest. In motion another selection is a stop, and is
-// taken over at the next rest. Without the promise of the machine file it changes nothing.
+// A person selects one joint and one way, at rest. In motion another selection is a stop, and has
+// an effect from the next rest on. Without the promise of the machine file it changes nothing.
 static void select_jog(void) {
     const int joint = *pins->jog_joint;
     const bool is_one = joint >= 0 && joint < joints && state.has_begun &&
@@ -278,7 +278,7 @@ static void change_tool(bool may_move) {
 
 // --- Motion -----------------------------------------------------------------------------------
 
-// What LinuxCNC commands, and whether that is where the joints are.
+// Reads LinuxCNC's commands. True: they agree with the places of the joints.
 static bool read_commands(double wanted[]) {
     bool is_aligned = true;
     for (int i = 0; i < joints; ++i) {
@@ -368,7 +368,7 @@ static bool is_fast(void) {
     return is_moving;
 }
 
-// Where the joints go in this period. Without permission a joint in motion is brought to rest, and
+// Moves the joints for one period. Without permission a joint in motion is brought to rest, and
 // one at rest stays; a command that leaves it then opens the E-stop chain.
 static void move(bool may_pass, const double wanted[], bool is_aligned, double period_s) {
     bool moves = false;
@@ -434,7 +434,7 @@ static void send_sample(void) {
         *pins->position[i] = state.at[i] - *pins->offset[i];
         record[AXG_WIRE_SAMPLE_WORDS + i].f = *pins->position[i];
     }
-    hal_stream_write(&samples_out, record);  // a full stream is a sample lost: its number tells
+    hal_stream_write(&samples_out, record);  // a full stream loses the sample: its number shows it
 }
 
 static void show(const axg_board_motion* motion) {
@@ -469,7 +469,7 @@ static void check_clock(long period_ns) {
     }
 }
 
-// Where the thread waits for the guard its periods have no length.
+// Periods have no length while the thread waits for the guard (simulation).
 static void check_period(void) {
     if (*pins->simulation_wait_us != 0) {
         state.period = (axg_period){.is_shown = true};

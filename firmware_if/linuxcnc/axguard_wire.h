@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What the realtime and the userspace component say to each other, by two HAL streams: a sample of
-// every servo period one way, frames of the guard the other way.
+// Messages between the realtime and the userspace component, in two HAL streams: a sample of every
+// servo period one way, frames of the guard the other way.
 #ifndef AXG_AXGUARD_WIRE_H
 #define AXG_AXGUARD_WIRE_H
 
@@ -21,7 +21,7 @@ enum {
     AXG_WIRE_FRAME = 1,   // a frame of the guard
     AXG_WIRE_OPTION = 2,  // `length` names the option, the value is its value
     AXG_WIRE_BEGIN = 3,   // all options were sent: power up
-    AXG_WIRE_DONE = 4     // everything was sent that answers the sample with this number; `length`
+    AXG_WIRE_DONE = 4     // all replies to the sample with this number were sent; `length`
                           // is 1 when the guard may be armed, or is
 };
 

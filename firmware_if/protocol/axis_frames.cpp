@@ -220,7 +220,7 @@ std::uint32_t slot_of(const AxisFrameSet& set, const CanFrame& frame) noexcept {
         if (!is_id_of(set.ids[slot], frame.id, frame.extended)) {
             continue;
         }
-        // A frame of another length says nothing about its turn; the decoder refuses it.
+        // A frame of another length has no valid selector; the decoder refuses it.
         if (selector.length_bits == 0 || frame.length_bytes != set.frame_bytes[slot] ||
             detail::get_bits(detail::bits_of(selector), frame.data.data()) == selector.value) {
             break;
@@ -330,7 +330,7 @@ const char* to_text(EncodeStatus status) noexcept {
 AxisEncoder::AxisEncoder(const Machine& machine, EncoderOptions options) noexcept
     : set_(make_frame_set(machine)), options_(options) {}
 
-/// As a board has to: at once, every 100 ms, and where SYNC begins again.
+/// Due as on a board: at once, every 100 ms, and where SYNC begins again.
 bool AxisEncoder::is_session_due(const AxisSnapshot& snapshot) const noexcept {
     return options_.says_session && set_.session_id != 0 &&
            (!has_session_ || sync_counter_of(snapshot.sample) == 1 ||

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Axis positions to CAN frames and back, in the four formats of CanLayout. Byte by byte:
-// docs/reference/protocol.md. No allocation, no state of the bus: whether a frame may be used is
-// the receiver's business (axis_receiver.hpp).
+// docs/reference/protocol.md. No allocation, no state of the bus: the receiver decides whether a
+// frame may be used (axis_receiver.hpp).
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace axg {
 
-// Drives: positions and status words apart; signals: one a frame, and what the board says besides.
+// Drives: separate positions and status words; signals: one a frame, and four of the board itself.
 inline constexpr std::uint32_t kAxisFramesMax = 2 * kAxesMax + 4;
 inline constexpr std::uint32_t kSignalsMax = 96;  // of all frames together
 inline constexpr std::uint32_t kFramesPerSnapshotMax =
@@ -23,7 +23,7 @@ inline constexpr std::uint32_t kFramesPerSnapshotMax =
 inline constexpr std::uint32_t kFdAxesMax = 13;            // 12 + 4 * 13 = 64 bytes
 inline constexpr std::uint32_t kLookAheadAxesMax = 7;      // 6 + 8 * 7 = 62 bytes
 inline constexpr std::uint8_t kSyncCounterMax = 240;       // CANopen object 0x1019
-inline constexpr std::int32_t kNoPosition24 = -(1 << 23);  // "position not known"
+inline constexpr std::int32_t kNoPosition24 = -(1 << 23);  // marker: no position
 inline constexpr std::int32_t kNoPosition32 = INT32_MIN;
 inline constexpr double kClassicalUnitMm = 1.0e-3;  // 1 um
 inline constexpr double kFdUnitMm = 1.0e-4;         // 0.1 um
@@ -32,7 +32,7 @@ inline constexpr std::uint8_t kHeartbeatOperational = 5;
 inline constexpr std::int64_t kHeartbeatPeriodUs = 10000;
 inline constexpr std::int64_t kSessionPeriodUs = 100'000;
 
-/// What can be wrong between a machine's axes and its CAN layout.
+/// Mismatches between a machine's axes and its CAN layout.
 enum class LayoutStatus : std::uint8_t {
     ok,
     no_axes,
@@ -60,14 +60,14 @@ enum class LayoutStatus : std::uint8_t {
 /// 11-bit and distinct.
 [[nodiscard]] LayoutStatus check_layout(const Machine& machine) noexcept;
 
-/// Where everything lies, derived once from a Machine: fixed arrays, so that coding needs no heap
-/// and no Machine.
+/// Places of all values in the frames, derived once from a Machine: fixed arrays, so that coding
+/// needs no heap and no Machine.
 struct AxisFrameSet {
     struct AxisWire {
         AxisKind kind = AxisKind::linear;
         bool unlimited = false;
         double unit = 0;  // mm or rad of one count on the wire (signals: |factor| in these units)
-        double still_speed = 0;  // mm/s or deg/s: below it a drive that says so does not move
+        double still_speed = 0;  // mm/s or deg/s: a drive that reports no more is at rest
     };
     LayoutStatus status = LayoutStatus::no_axes;
     CanFormat format = CanFormat::classical;
@@ -83,7 +83,7 @@ struct AxisFrameSet {
     std::array<std::uint16_t, kAxisFramesMax> counter_modulus{};  // 0: the frame counts nothing
     std::array<SignalSelector, kAxisFramesMax> selectors{};       // which frames of an id are this
     std::array<CanSignal, kSignalsMax> signals{};
-    std::array<std::uint8_t, kSignalsMax> signal_slots{};  // the frame that each stands in
+    std::array<std::uint8_t, kSignalsMax> signal_slots{};  // the frame that contains each
     std::uint32_t signal_count = 0;
     std::uint32_t sync_id = 0, heartbeat_id = 0;
     std::uint32_t look_ahead_samples = 0;  // 0: no such frame
@@ -94,8 +94,8 @@ struct AxisFrameSet {
 };
 [[nodiscard]] AxisFrameSet make_frame_set(const Machine& machine) noexcept;
 
-/// The content of one axis frame. Raw counts stay beside the values: equality and markers are
-/// judged on them.
+/// The content of one axis frame. It has raw counts in addition to the values: tests for equality
+/// and markers use them.
 struct AxisFrameContent {
     std::uint8_t counter = 0;          // classical 0..15, fd 0..255, others where they have one
     std::uint8_t sample_index = 0;     // classical (SYNC counter - 1) mod 16, fd the SYNC counter
@@ -117,12 +117,11 @@ struct AxisFrameContent {
 
 enum class FrameStatus : std::uint8_t { ok, not_ours, bad_length, bad_format, raw_dlc, bad_crc };
 
-/// The axis frame of the set that carries this id, and where frames of one id take turns, this
-/// turn; frame_count where none does. An id of 11 bits is none of 29.
+/// Number of the set's axis frame with this id, and with this selector where frames share an id;
+/// frame_count: none. An id of 11 bits never matches one of 29.
 [[nodiscard]] std::uint32_t slot_of(const AxisFrameSet& set, const CanFrame& frame) noexcept;
 
-/// Decodes axis frame number `slot` of the set. Refuses whatever is not exactly such a frame;
-/// counters are not judged.
+/// Decodes axis frame number `slot` of the set. Refuses every other frame; does not judge counters.
 [[nodiscard]] FrameStatus decode_axis_frame(const AxisFrameSet& set, std::uint32_t slot,
                                             const CanFrame& frame, AxisFrameContent& out) noexcept;
 
@@ -134,8 +133,8 @@ struct LookAheadFrameContent {
     std::array<double, kAxesMax> position{}, before{};
 };
 
-/// Decodes the frame of the look-ahead path. bad_format also where it speaks of another
-/// number of samples than the set, or where a position is not known.
+/// Decodes the frame of the look-ahead path. Also bad_format: another number of samples than the
+/// set has, or a position with the marker.
 [[nodiscard]] FrameStatus decode_look_ahead_frame(const AxisFrameSet& set, const CanFrame& frame,
                                                   LookAheadFrameContent& out) noexcept;
 
@@ -158,7 +157,7 @@ struct LookAheadFrameContent {
 
 enum class EncodeStatus : std::uint8_t {
     ok,
-    bad_layout,     // AxisFrameSet::status says which
+    bad_layout,     // reason: AxisFrameSet::status
     bad_snapshot,   // another number of axes than the machine
     out_of_range,   // a position does not fit its field, or is not finite
     out_too_small,  // `out` holds fewer than the frames needed
@@ -174,8 +173,8 @@ struct EncodeResult {
 struct EncoderOptions {
     std::uint32_t bit_rate = 1'000'000;  // arbitration rate; fd data at five times that
     std::int64_t spacing_us = 0;         // idle time the board leaves between its frames
-    // With permit 2: it says the session, of a board that a person armed once. False: somebody else
-    // does.
+    // With permit 2: sends the session of a board that a person armed once. False: the caller sends
+    // it.
     bool says_session = true;
     std::uint32_t nonce = 0x5E5510;
 };
@@ -183,7 +182,7 @@ struct EncoderOptions {
 /// Plays the motion board: SYNC, the axis frames, the heartbeat every 10 ms and with permit 2 the
 /// session every 100 ms and with each lap (signals: the axis frames only; cia402: no heartbeat).
 /// SYNC ends at snapshot.latched_us; the others follow by their bus time, or evenly spread where
-/// they do not fit into one sample period, which no wire can do but a simulation may.
+/// they do not fit into one sample period, which is possible only in a simulation.
 class AxisEncoder {
   public:
     explicit AxisEncoder(const Machine& machine, EncoderOptions options = {}) noexcept;
@@ -200,7 +199,7 @@ class AxisEncoder {
 
     AxisFrameSet set_;
     EncoderOptions options_;
-    std::uint32_t counter_ = 0;  // of snapshots; each format takes as many bits as it has
+    std::uint32_t counter_ = 0;  // of snapshots; each format uses the bits of its field
     bool has_heartbeat_ = false;
     std::int64_t heartbeat_us_ = 0;
     bool has_session_ = false;

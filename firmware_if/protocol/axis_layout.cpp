@@ -84,7 +84,7 @@ constexpr bool belongs_to_axis(SignalRole role) noexcept {
            role == SignalRole::drive_status;
 }
 
-/// Whether two signals say the same, or cannot both be read as one frame is.
+/// Checks that two signals have different meanings, and that frames with one id have one shape.
 LayoutStatus check_two(const CanLayout& can, const CanSignal& a, const CanSignal& b) noexcept {
     const bool is_frame = a.id == b.id && a.selector == b.selector;
     if (a.role == b.role) {
@@ -98,7 +98,7 @@ LayoutStatus check_two(const CanLayout& can, const CanSignal& a, const CanSignal
     if (a.id != b.id) {
         return LayoutStatus::ok;
     }
-    // All frames of an id take turns by the same bits, or none does.
+    // The same bits select all frames of an id, or there is one such frame without a selector.
     const bool is_same_selector =
         a.selector.length_bits == b.selector.length_bits &&
         (a.selector.length_bits == 0 ||
@@ -261,7 +261,7 @@ void fill_signals(const Machine& machine, AxisFrameSet& set) noexcept {
             auto& axis = set.axes[signal.axis];
             const double count = count_of(signal, machine.axes[signal.axis]);
             axis.unit = axis.kind == AxisKind::rotary ? count * (kPi / 180.0) : count;
-            // Ten counts in the time after which standing still would be called frozen.
+            // Ten counts in the time after which unchanged positions count as frozen.
             axis.still_speed = 10 * count / frozen_s;
         }
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the guard sends: the permit and its inverted twin, the stop, the emergency message, the
-// heartbeat; and a strict reader of the same, as a board would do it, for tests and for looking at
-// traces. Bytes: docs/reference/protocol.md.
+// Frames of the guard: the permit and its inverted twin, the stop, the emergency message, the
+// heartbeat. Also a strict reader of them, like that of a board, for tests and for traces.
+// Bytes: docs/reference/protocol.md.
 #pragma once
 
 #include <array>
@@ -32,8 +32,8 @@ struct Permit {
     friend constexpr bool operator==(const Permit&, const Permit&) = default;
 };
 
-/// What a judged cycle says: stop without a permit; with one slow where a pair's clearance level is
-/// slow or worse, else run.
+/// The permit of a judged cycle. Its word is stop without a permit, else jog in a jog, else slow
+/// if a pair's clearance level is slow or worse, else run.
 [[nodiscard]] Permit permit_of(const CycleResult& result, std::uint8_t live_counter,
                                std::uint8_t sync_counter) noexcept;
 
@@ -89,7 +89,7 @@ struct Emergency {
 
 enum class GuardFrameStatus : std::uint8_t {
     ok,         // read
-    not_ours,   // another id: nothing is said about it
+    not_ours,   // another id, or extended, or an error frame: not judged
     bad_shape,  // flexible, extended, remote, an error frame, or another length
     bad_word,   // no permit word, or a value that is reserved
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether board and guard were configured from the same machine: each sends its four hashes, and
-// until all are the same the guard permits nothing. The guard asks by saying its own, one part at a
-// time, until the board has answered. No clock, no allocation. Bytes: docs/reference/protocol.md,
+// the guard issues no permit until all are equal. It requests them by sending its own, one part at
+// a time, until the board has replied. No clock, no allocation. Bytes: docs/reference/protocol.md,
 // "Hashes".
 #pragma once
 
@@ -20,13 +20,13 @@ struct HashFrame {
 };
 [[nodiscard]] CanFrame encode_hash(std::uint32_t id, HashFrame content,
                                    std::int64_t time_us) noexcept;
-/// False: not exactly such a frame. Its id is the caller's business.
+/// False: not exactly such a frame. The caller checks its id.
 [[nodiscard]] bool decode_hash(const CanFrame& frame, HashFrame& out) noexcept;
 
 class Handshake {
   public:
-    static constexpr std::int64_t kRepeatUs = 10'000;   // until it is answered
-    static constexpr std::int64_t kWaitUs = 1'000'000;  // then a person is told
+    static constexpr std::int64_t kRepeatUs = 10'000;   // until the board replies
+    static constexpr std::int64_t kWaitUs = 1'000'000;  // then a person is notified
 
     /// A layout without the two ids: no requests, and everything agrees.
     Handshake(const CanLayout& layout, const ConfigurationHashes& hashes) noexcept
@@ -46,11 +46,11 @@ class Handshake {
     }
     /// The next request. Precondition: it is due.
     [[nodiscard]] CanFrame next(std::int64_t now_us) noexcept;
-    /// Once, when the board has not answered for long.
+    /// True once, when the board has not sent all its hashes for kWaitUs.
     [[nodiscard]] bool is_overdue(std::int64_t now_us) noexcept;
 
     enum class Heard : std::uint8_t { nothing, equal, different };
-    /// A frame of another node. `different` at any time: what was agreed is void.
+    /// A frame of another node. `different`, which is possible at any time, voids the agreement.
     [[nodiscard]] Heard on_frame(const CanFrame& frame) noexcept;
     /// The board's hash in the last frame that differed.
     [[nodiscard]] HashFrame theirs() const noexcept { return theirs_; }

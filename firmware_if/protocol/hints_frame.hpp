@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frame for a display every 10 ms: the pair that is nearest to its margin, and how far
-// apart it is proven to be. Advice without a checksum, of the lowest rank: no proof and no board
-// depends on it. Bytes: docs/reference/board.md, "Hints".
+// Frame for a display every 10 ms: the pair that is nearest to its margin, and its proven
+// distance. Advice without a checksum, of the lowest rank: no proof and no board depends on it.
+// Bytes: docs/reference/board.md, "Hints".
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ struct Hints {
     std::uint16_t distance_10um = 0;  // lower bound, rounded down
 };
 
-/// Of a cycle without a permit: the pair that is not proven, and distance 0.
+/// Hints of a cycle. Without a permit: the pair that is not proven, and distance 0.
 [[nodiscard]] Hints hints_of(const CycleResult& result, std::uint8_t sync_counter) noexcept;
 
 /// Five bytes on layout.hints_id.

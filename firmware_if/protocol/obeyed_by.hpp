@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who ends the motion of a machine when permits end, and whether a proof holds for it. One decision
-// for every program that guards, checks or replays. Source: docs/reference/machine-file.md, "Who
-// obeys the permit".
+// The part that ends the motion of a machine when permits end, and whether a proof holds for it.
+// One decision for every program that guards, checks or replays. Source:
+// docs/reference/machine-file.md, "Who obeys the permit".
 #pragma once
 
 #include <string>
@@ -13,8 +13,8 @@ namespace axg {
 /// Whether a permit names its sample by the SYNC counter that board and guard both have: 1 to 240.
 [[nodiscard]] bool has_sample_counter(const CanLayout& can) noexcept;
 
-/// Why nothing obeys the permits of this machine within the time that its certificates suppose, and
-/// what to change; empty: the board does.
+/// The reason why no part obeys the permits of this machine within the time that its certificates
+/// suppose, and the change to make; empty: the board obeys them.
 [[nodiscard]] std::string obeyed_by_refusal(const Machine& machine);
 
 }  // namespace axg

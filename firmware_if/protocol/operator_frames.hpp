@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A person's reset and arm by frames: what a control panel sends, and the status that the guard
-// answers with. The panel's side is firmware_if/board/axguard_operator.h. Bytes:
+// A person's reset and arm by frames: the message of a control panel, and the guard's status in
+// reply. The panel's side is firmware_if/board/axguard_operator.h. Bytes:
 // docs/reference/board.md, "An operator's reset and arm".
 #pragma once
 
@@ -18,8 +18,8 @@ enum class OperatorStep : std::uint8_t { request = 0x0F, confirm = 0xF0 };
 
 enum class OperatorRefusal : std::uint8_t {
     none = 0,
-    moves,     // an axis moves, or is not proven to stand
-    cause,     // what stopped the guard is still there
+    moves,     // an axis moves, or is not proven to be at rest
+    cause,     // the cause of the stop is still present
     phase,     // nothing to reset or to arm in this phase
     nonce,     // a confirmation of another request, or of none
     too_late,  // confirmed more than 5 s after the request
@@ -30,7 +30,7 @@ inline constexpr std::uint32_t kOperatorRefusals = 7;
 struct OperatorMessage {
     OperatorAction action = OperatorAction::none;
     OperatorStep step = OperatorStep::request;
-    bool stands = false;       // a person sees that all axes stand: with format signals alone
+    bool stands = false;       // a person sees all axes at rest: only with format signals
     std::uint8_t counter = 0;  // 4 bits
     std::uint32_t nonce = 0;   // 24 bits, of the status; 0 in a request
 };

@@ -16,7 +16,7 @@ using detail::put_little;
 constexpr std::uint8_t kSessionVersion = 1;
 constexpr std::uint8_t kFrameBytes = 8;
 
-/// Everything of the permit but the answer, then what only guard and board know.
+/// Bytes 3 and 4: a CRC over the other bytes, nonce and lap, in one with the known-answer result.
 std::uint16_t answer_of(const std::uint8_t* data, const Permit2& permit) noexcept {
     std::array<std::uint8_t, 11> covered{data[0], data[1], data[2], data[5], data[6], data[7]};
     put_little(covered.data() + 6, permit.nonce, 3);
@@ -39,10 +39,10 @@ Permit2 permit2_of(const CycleResult& result, std::uint8_t live_counter,
     if (permit.word == PermitWord::stop) {
         return permit;
     }
-    // 0 would be hold: a board that obeys it waits where it stands, and for ever.
+    // 0 would be hold: a board that obeys it would wait in place for ever.
     permit.cap = std::max<std::uint8_t>(same.speed_cap, 1);
     permit.mask = permit.cap < kPermitCapNone ? kAllAxes : std::uint8_t{0};
-    if (result.has_cap) {  // what was proven with it
+    if (result.has_cap) {  // the cap of the proof
         permit.cap = result.cap_order.cap;
         permit.mask = result.cap_order.mask;
     }

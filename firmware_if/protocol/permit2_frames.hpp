@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Permit version 2 and the session frame that it answers: the guard's side of
+// Permit version 2 and the session frame that it refers to: the guard's side of
 // docs/reference/board.md. The board's side is firmware_if/board.
 #pragma once
 
@@ -39,8 +39,8 @@ struct Permit2 {
     std::uint16_t lap = 0;     // of the sample that was certified
 };
 
-/// What a judged cycle says, without session. For a board that promises no cap what the proof would
-/// like is advice for all axes, and never to hold.
+/// The permit of a judged cycle, without session. For a board that promises no cap, the speed cap
+/// is advice for all axes, and never hold.
 [[nodiscard]] Permit2 permit2_of(const CycleResult& result, std::uint8_t live_counter,
                                  std::uint8_t sync_counter) noexcept;
 
@@ -48,13 +48,13 @@ struct Permit2 {
 /// samples <= 15, level <= 3, cap <= 250. With jog and stop, cap and mask are sent as none.
 [[nodiscard]] std::array<CanFrame, 2> encode_permit2(const CanLayout& layout, const Permit2& permit,
                                                      std::int64_t time_us) noexcept;
-/// The same of values that no guard sends, for whoever tests a board with them. Of samples and
-/// level the low four bits.
+/// The same with values that no guard sends, to test a board. Encodes the low four bits of samples.
+/// Precondition: level <= 15.
 [[nodiscard]] std::array<CanFrame, 2> encode_any_permit2(const CanLayout& layout,
                                                          const Permit2& permit,
                                                          std::int64_t time_us) noexcept;
 
-/// What a board sends, for those that play one. Precondition: nonce and counter fit their fields.
+/// For simulated boards. Precondition: nonce and counter fit their fields.
 [[nodiscard]] CanFrame encode_session(std::uint32_t id, const Session& session,
                                       std::int64_t time_us) noexcept;
 

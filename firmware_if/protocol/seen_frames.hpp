@@ -16,14 +16,14 @@ namespace axg {
 
 /// A pair of frames with a permit of version 2.
 struct SeenPermit2 {
-    Permit2 permit;  // nonce and lap stay 0: the frames answer for them, and do not show them
+    Permit2 permit;  // nonce and lap are 0: the CRC covers them, no byte shows them
     std::uint16_t answer = 0;
 };
-/// Nothing: no pair, or values that no guard sends.
+/// Empty: no pair, or values that no guard sends.
 [[nodiscard]] std::optional<SeenPermit2> read_permit2(const CanLayout& layout,
                                                       const CanFrame& plain,
                                                       const CanFrame& twin) noexcept;
-/// The answer of a right permit with this nonce and lap.
+/// Bytes 3 and 4 of a correct permit with this nonce and lap.
 [[nodiscard]] std::uint16_t answer_of(const CanLayout& layout, const Permit2& permit) noexcept;
 
 [[nodiscard]] std::optional<Hints> read_hints(const CanLayout& layout,

@@ -18,7 +18,7 @@ using detail::value_of;
 
 constexpr double kDegreesPerRadian = 180.0 / kPi;
 
-// Status word 0x6041 of CiA 402: bits 0..3 and 6 tell a fault from all other states.
+// Status word 0x6041 of CiA 402: bits 0..3 and 6 distinguish a fault from all other states.
 constexpr std::uint32_t kStateBits = 0x4F;
 constexpr std::uint32_t kFault = 0x08, kFaultReaction = 0x0F;
 constexpr std::uint32_t kOperationEnabled = 0x0237;  // with voltage and remote
@@ -41,7 +41,7 @@ void add_mode(std::uint8_t mode, AxisFrameContent& out) noexcept {
     out.mode = std::max(out.mode, mode);
 }
 
-/// False: the value is none that this signal may have.
+/// False: this signal cannot have the value.
 bool add_state(const CanSignal& signal, const Wire& axis, std::int64_t raw,
                AxisFrameContent& out) noexcept {
     const auto bits = static_cast<std::uint32_t>(raw);
@@ -131,7 +131,7 @@ double speed_of(const AxisFrameSet& set, const AxisSnapshot& snapshot, const Axi
     return wire.kind == AxisKind::rotary ? speed * kDegreesPerRadian : speed;
 }
 
-/// What `snapshot` says in this signal; false where it does not fit.
+/// The raw value of `snapshot` in this signal; false if it does not fit.
 bool raw_signal(const AxisFrameSet& set, const CanSignal& signal, const AxisSnapshot& snapshot,
                 const AxisSnapshot& last, std::uint32_t counter, std::int64_t& raw) noexcept {
     const bool is_homed = (snapshot.flags & kFlagNotHomed) == 0;

@@ -89,7 +89,7 @@ constexpr void put_bits(const BitRun& run, std::uint64_t bits, std::uint8_t* dat
                : static_cast<std::int64_t>(bits);
 }
 
-/// What a signal's raw bits mean, without factor and offset. Not finite where a float is not.
+/// The number in a signal's raw bits, without factor and offset. Not finite if a float is not.
 [[nodiscard]] constexpr double number_of(const CanSignal& signal, std::int64_t raw) noexcept {
     switch (signal.type) {
         case SignalType::integer:

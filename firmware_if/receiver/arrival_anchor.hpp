@@ -11,16 +11,16 @@
 
 namespace axg {
 
-/// Of a period.
+/// Largest jitter of arrivals, as a share of a period.
 inline constexpr double kArrivalJitterShareMax = 0.96;
 
 struct ArrivalAnchor {
     std::int64_t period_us = 1;
-    // An arrival may be so much later than another one; at most kArrivalJitterShareMax of a period.
+    // Largest lateness of an arrival against another; at most kArrivalJitterShareMax of a period.
     std::int64_t jitter_us = 0;
     bool has_sample = false;
-    std::int64_t early_us = 0;  // when the newest sample could have arrived at the earliest, as
-    std::int64_t late_us = 0;   // far as is known, and when the latest ones would have
+    std::int64_t early_us = 0;  // not before the newest sample's arrival without delay
+    std::int64_t late_us = 0;   // not after its arrival with the largest delay seen
 };
 
 struct ArrivalNumber {
@@ -34,7 +34,7 @@ struct ArrivalNumber {
 /// rises by as much as a period may be off. So no number runs ahead, and while nothing is lost each
 /// is exact. After a loss a number may be one too small: by the delay of the first arrival, by that
 /// of the newest, and by what `early_us` rises too fast, two percent of a period each. Over the
-/// samples kept (at most 36 periods with all that may be lost) that is 0.96 + 0.96 + 0.72 periods:
+/// stored samples (at most 36 periods with all losses) that is 0.96 + 0.96 + 0.72 periods:
 /// two numbers too small, an error of two periods. With a quarter of a period of jitter none is.
 [[nodiscard]] constexpr ArrivalNumber number_arrival(ArrivalAnchor& anchor,
                                                      std::int64_t arrived_us) noexcept {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What all formats share: a set of frames, and from a complete one a coherent snapshot. The sets of
+// Shared by all formats: a set of frames, and from a complete one a coherent snapshot. The sets of
 // each format: native_assembly.cpp, signal_assembly.cpp, drive_assembly.cpp.
 #include <algorithm>
 
@@ -24,7 +24,7 @@ void AxisReceiver::add_to_set(const AxisFrameContent& content, std::uint32_t slo
     }
     if (content.has_status) {
         snapshot_.mode =
-            std::max(snapshot_.mode, content.mode);  // several frames may have their say
+            std::max(snapshot_.mode, content.mode);  // several frames may each state a mode
         snapshot_.flags |= content.flags;
     }
     if (content.has_tool) {

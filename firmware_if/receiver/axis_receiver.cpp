@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which frames may be used at all. How they become one snapshot: axis_assembly.cpp.
+// Decides which frames may be used. Their assembly to one snapshot: axis_assembly.cpp.
 #include "firmware_if/receiver/axis_receiver.hpp"
 
 #include <algorithm>
@@ -10,16 +10,16 @@
 namespace axg {
 namespace {
 
-// linux/can/error.h as numbers: the classes stand in the id, details in data[1].
+// Values of linux/can/error.h: the id contains the classes, data[1] the details.
 constexpr std::uint32_t kErrorController = 0x004, kErrorBusOff = 0x040, kErrorRestarted = 0x100;
 constexpr std::uint8_t kControllerRxOverflow = 0x01, kControllerRxPassive = 0x10,
                        kControllerTxPassive = 0x20;
 
-// A counter that comes round sooner would take half of what is older for lost frames.
+// With a smaller modulus, half of all older counter values would count as lost frames.
 constexpr std::uint16_t kWideCounter = 14;
 constexpr std::uint8_t kNarrowSteps = 3;
 
-// Of so many SYNCs in a row one at least is late by no more than a period.
+// At least one of so many SYNCs in a row is late by no more than a period.
 constexpr std::uint32_t kSyncUnit = 8;
 // Without a stated jitter two samples may be numbered so many periods short (arrival_anchor.hpp).
 constexpr std::int64_t kNumbersOff = 2;
@@ -28,8 +28,8 @@ std::int64_t latch_jitter_us(const Machine& machine) noexcept {
     return std::lround(std::ceil(machine.guard.latch_jitter_s * 1e6));
 }
 
-/// A clock that is read at the latch proves by its jitter; one that is read later refutes nothing
-/// while rule 6 bears it.
+/// A sender's clock that is read at the latch proves the period within its jitter. One that is read
+/// later refutes nothing while rule 6 tolerates it.
 PeriodTerms sender_terms(const Machine& machine) noexcept {
     const std::int64_t period_us = machine.can.sample_us;
     const std::int64_t off_us = latch_jitter_us(machine) + 1;
@@ -146,7 +146,7 @@ void AxisReceiver::acknowledge() noexcept {
     forget();
 }
 
-/// No reference is left: the next frames are taken as the first ones.
+/// Clears all references: the next frames count as the first ones.
 void AxisReceiver::forget() noexcept {
     for (Slot& slot : slots_) {
         slot.sequence.reset();
@@ -193,7 +193,7 @@ ReceiverEvent AxisReceiver::fault(ReceiverFault kind, std::uint32_t frame_id,
     return event;
 }
 
-/// Also remembers that it was shown to be right.
+/// Also stores that the period was shown to be right.
 bool AxisReceiver::is_period_wrong(PeriodWatch& watch, std::int64_t steps,
                                    std::int64_t stamp_us) noexcept {
     if (options_.period == PeriodUse::ignored || !measures_period_) {
@@ -256,7 +256,7 @@ ReceiverEvent AxisReceiver::on_frame(const CanFrame& frame) noexcept {
     }
     const std::uint32_t slot = slot_of(set_, frame);
     const bool is_axis = slot < set_.frame_count;
-    // Only axis frames may have ids of 29 bits; whoever sends another one with our low bits may
+    // Only axis frames may have ids of 29 bits; the sender of another one with our low bits may
     // have meant ours.
     const std::uint32_t low_bits = frame.id & kStandardIdMax;
     const bool is_other = !is_axis && (frame.extended || frame.id != low_bits);
@@ -292,7 +292,7 @@ ReceiverEvent AxisReceiver::on_frame(const CanFrame& frame) noexcept {
     if (is_session) {
         return on_session_frame(frame);
     }
-    // Frames of ours beyond twice a set in one period: someone else sends them too.
+    // More than twice a set of our frames in one period: another node sends them too.
     if (is_flood()) {
         return fault(ReceiverFault::flood, frame.id);
     }
@@ -323,7 +323,7 @@ ReceiverEvent AxisReceiver::on_error_frame(const CanFrame& frame) noexcept {
     return fault(ReceiverFault::error_frame, frame.id);
 }
 
-/// The period starts anew with each SYNC, or by itself where SYNC is silent.
+/// The period starts anew with each SYNC, or by itself without SYNC.
 bool AxisReceiver::is_flood() noexcept {
     if (window_us_ == INT64_MIN || now_us_ - window_us_ >= set_.sample_us) {
         window_us_ = now_us_;

@@ -20,12 +20,12 @@
 
 namespace axg {
 
-// The leaky count of lost samples: one in four for ever is borne, one in three is not; twenty in a
+// The leaky count of lost samples tolerates one in four for ever, but not one in three; twenty in a
 // row stop at once.
-inline constexpr std::uint32_t kLossWeight = 3;  // a lost sample adds this, a good one takes 1 away
+inline constexpr std::uint32_t kLossWeight = 3;  // added by a lost sample; a good one subtracts 1
 inline constexpr std::uint32_t kLossLimit = 60;
 
-// A board sends its session every 100 ms: two lost in a row are borne.
+// A board sends its session every 100 ms: two lost in a row are tolerated.
 inline constexpr std::int64_t kSessionTimeoutUs = 300'000;
 
 /// INVALID ends only by acknowledge(). Only VALID allows a permit.
@@ -47,7 +47,7 @@ struct ReceiverEvent {
     PathPoints look_ahead;  // valid for kind look_ahead: samples counted as in the snapshots
 };
 
-/// What a permit of version 2 answers for: the board's nonce, and the lap of the sample.
+/// The CRC of a version 2 permit covers these: the board's nonce, and the lap of the sample.
 struct SampleSession {
     std::uint32_t nonce = 0;
     std::uint16_t lap = 0;
@@ -63,7 +63,7 @@ struct ReceiverCounters {
     std::uint64_t late = 0;             // of those, complete only after the period had passed
     std::uint64_t samples_lost = 0;     // never handed out, between snapshots
     std::uint64_t estimated = 0;        // snapshots whose SYNC was lost: latch instant extrapolated
-    std::uint64_t clock_steps = 0;      // a frame's stamp lay before the one before
+    std::uint64_t clock_steps = 0;      // frames whose stamp was before the clock
     std::uint64_t ignored_invalid = 0;  // frames that came while INVALID
     // The mean period of the last window that proved or refuted the declared one; 0: none did.
     std::int64_t measured_period_ns = 0;
@@ -74,30 +74,30 @@ struct ReceiverCounters {
     }
 };
 
-/// Of two receivers, one after the other.
+/// Sums of two receivers that ran one after the other.
 [[nodiscard]] ReceiverCounters operator+(ReceiverCounters a, const ReceiverCounters& b) noexcept;
 
-/// What the board's period is held to (rule 6).
+/// How the receiver judges the board's period (rule 6).
 enum class PeriodUse : std::uint8_t {
-    supposed = 0,  // one shown to be wrong stops: a trace, whose own period is taken
-    proven,        // and VALID waits until it is shown to be right: whoever gives permits
-    ignored,       // whoever reads positions alone
+    supposed = 0,  // a period shown to be wrong stops: for a trace, read with its own period
+    proven,        // also, VALID waits until it is shown to be right: for a guard
+    ignored,       // for programs that read only positions
 };
 
 struct ReceiverOptions {
     bool refuse_local = false;  // live: a frame of ours sent from this host is a second sender
-    bool takes_jumps = false;   // for whoever measures speeds: rule 8 looks at the travel alone
+    bool takes_jumps = false;   // for measuring speeds: rule 8 checks only the travel
     PeriodUse period = PeriodUse::supposed;
 };
 
-/// Whether any stamp of the layout measures the board's period: not where SYNC is the guard's own.
+/// Whether any stamp of the layout measures the board's period; false if the guard sends SYNC.
 [[nodiscard]] bool measures_period(const CanLayout& can) noexcept;
-/// What the stamps of SYNC, or arrivals, show of the period.
+/// Terms by which the stamps of SYNC, or arrivals, prove or refute the period.
 [[nodiscard]] PeriodTerms sync_terms(const Machine& machine) noexcept;
-/// For lists of what nothing measures: the promise about the period; empty: it is measured.
+/// For lists of unmeasured promises: the promise about the period; empty: it is measured.
 [[nodiscard]] std::string_view unmeasured_period(const CanLayout& can) noexcept;
 
-/// A frame that can not be decoded.
+/// The fault of a frame with this decoder status.
 [[nodiscard]] ReceiverFault fault_of(FrameStatus status) noexcept;
 
 static_assert(kAxisFramesMax < 64, "a bit for each frame of a snapshot");
@@ -111,26 +111,26 @@ class AxisReceiver {
     /// Constant cost: at most one snapshot a frame.
     [[nodiscard]] ReceiverEvent on_frame(const CanFrame& frame) noexcept;
 
-    /// The clock without a frame: silence is found by time, never by arrival.
+    /// The clock without a frame: time reveals silence, never an arrival.
     [[nodiscard]] ReceiverEvent on_time(std::int64_t now_us) noexcept;
 
-    /// A person has looked: INVALID becomes INIT, and everything is learnt anew.
+    /// A person acknowledges: INVALID becomes INIT, and all references are cleared.
     void acknowledge() noexcept;
 
-    /// Whether a window has shown that the period is right since the last acknowledge; so it is
-    /// where nothing measures it, and where it is supposed.
+    /// Whether a window has shown since the last acknowledge that the period is right. Also true if
+    /// nothing measures the period, or if `period` is not `proven`.
     [[nodiscard]] bool is_period_shown() const noexcept {
         const bool are_shown =
             shows_sync_period_ && (shows_sender_period_ || set_.format != CanFormat::fd);
         return are_shown || options_.period != PeriodUse::proven || !measures_period_;
     }
-    /// It was shown before the first frame: of a recording that begins in the middle.
+    /// Treats the period as shown, for a recording that begins in the middle.
     void suppose_period() noexcept { shows_sync_period_ = shows_sender_period_ = true; }
 
-    /// Of the newest sample with this SYNC counter, one of the last 240; nothing: the board's
-    /// session is not known, or older than kSessionTimeoutUs.
+    /// Session of the newest sample with this SYNC counter, one of the last 240. Empty: the board
+    /// has sent no session, or the last one is older than kSessionTimeoutUs.
     [[nodiscard]] std::optional<SampleSession> session_of(std::uint8_t sync_counter) const noexcept;
-    /// Of the newest sample; 0: there was none.
+    /// SYNC counter of the newest sample; 0: there was none.
     [[nodiscard]] std::uint8_t newest_sync_counter() const noexcept {
         return has_last_ ? last_sync_counter_ : std::uint8_t{0};
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // From the process data of drives to one snapshot (format cia402). Drives latch their positions as
-// SYNC ends and number nothing: what belongs together is told by time alone, so after whatever may
-// have mixed two instants a whole group is left out. Rules: docs/reference/protocol.md.
+// SYNC ends and number nothing: only time shows which frames belong together. After any event that
+// may have mixed two instants, a whole group is discarded. Rules: docs/reference/protocol.md.
 #include <algorithm>
 #include <cstdlib>
 
@@ -49,10 +49,10 @@ ReceiverEvent AxisReceiver::on_drive_sync(const CanFrame& frame) noexcept {
         restart(sync_period_);
     }
     if (wrong != ReceiverFault::none) {
-        return fault(wrong, frame.id);  // drives may answer it: no data until the next good one
+        return fault(wrong, frame.id);  // drives may react to it: no data until the next good one
     }
-    // What is missing from the group before, or answers a SYNC that was lost, may come yet and
-    // would look like this group's.
+    // Frames missing from the group before, or sent after a SYNC that was lost here, may still
+    // arrive and would look like this group's.
     drives_.is_suspect = drives_.has_sync && (!is_whole || steps > 1);
     const bool is_in_time =
         !drives_.has_sync || std::abs(elapsed_us - steps * period_us) <= period_us / 5;

@@ -10,7 +10,7 @@ namespace axg {
 namespace {
 
 constexpr std::uint8_t kEstimatesMost = 3;   // samples in a row whose SYNC was lost
-constexpr std::int64_t kSyncAgePeriods = 8;  // a stamp older than half the 16 kept is another turn
+constexpr std::int64_t kSyncAgePeriods = 8;  // a stamp older than half of the 16 is another turn
 // A look-ahead path may overtake the positions of its sample, or replace those that were lost.
 constexpr int kLookAheadSamplesLate = 2, kLookAheadSamplesEarly = 10;
 
@@ -58,7 +58,7 @@ ReceiverEvent AxisReceiver::on_sync(const CanFrame& frame) noexcept {
     if (is_set_back) {
         restart(sync_period_);
     }
-    // The frame's own stamp, even where it lies before the clock: a sample may only look older.
+    // The frame's own stamp, even if it is before the clock: a sample may only look older.
     last_sync_ = {counter, frame.time_us};
     sync_stamps_[index % 16U] = last_sync_;
     window_us_ = now_us_;
@@ -89,8 +89,8 @@ ReceiverEvent AxisReceiver::on_heartbeat(const CanFrame& frame) noexcept {
                                           : event();
 }
 
-/// Samples are counted as in the snapshots, so without a snapshot there is nothing to add it to. A
-/// frame may be heard before or after the positions of its sample.
+/// Counts samples as in the snapshots, so it needs a snapshot first. A frame may arrive before or
+/// after the positions of its sample.
 ReceiverEvent AxisReceiver::on_look_ahead_frame(const CanFrame& frame) noexcept {
     LookAheadFrameContent content;
     const FrameStatus status = decode_look_ahead_frame(set_, frame, content);
@@ -173,15 +173,15 @@ AxisReceiver::Latch AxisReceiver::latch_of(std::uint8_t sample_index,
     return {true, std::min(expected_us, set_first_us_), counter, expected_us};
 }
 
-/// A sender whose clock stands while its counter runs repeats old values in fresh frames. Where its
-/// clock shows that the frames were held up together with their SYNC, the sample is as old as the
-/// clock says. Its periods are counted from the sample that it dated last, delivered or not.
+/// A sender whose clock stops while its counter runs repeats old values in fresh frames. If its
+/// clock shows that the frames were delayed together with their SYNC, it determines the age of the
+/// sample. Its periods count from the sample that it dated last, delivered or not.
 ReceiverFault AxisReceiver::judge_sender_clock(std::uint32_t sender_us, Latch& latch) noexcept {
     const std::uint32_t steps = (set_index_ + index_modulus_ - sender_index_) % index_modulus_;
     const std::int64_t elapsed_us = static_cast<std::uint32_t>(sender_us - last_sender_us_);
     const std::int64_t wanted_us = std::int64_t{steps} * set_.sample_us;
     if (has_sender_ && std::abs(elapsed_us - wanted_us) * 5 > wanted_us) {
-        // The reference stays: a clock that stands is refused until it is stale.
+        // The reference is unchanged: a stopped clock is refused until the data is stale.
         return ReceiverFault::sender_clock;
     }
     sender_index_ = set_index_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether the board's period is the declared one, from stamps that may be late. Pure; a stamp costs
-// a look at 13 windows. Source: docs/reference/protocol.md, "Receiver rules", rule 6.
+// a check of 13 windows. Source: docs/reference/protocol.md, "Receiver rules", rule 6.
 #pragma once
 
 #include <algorithm>
@@ -11,23 +11,24 @@ namespace axg {
 
 enum class PeriodVerdict : std::uint8_t { unknown = 0, right, wrong };
 
-// Of the declared period: every proof supposes it (core/certificate/motion_history.hpp).
+// Every proof supposes the declared period to one part in this
+// (core/certificate/motion_history.hpp).
 inline constexpr std::int64_t kPeriodPart = 100;
 // Two clocks run apart by 200 ppm at most.
 inline constexpr std::int64_t kClockPart = 5000;
 
 struct PeriodTerms {
     std::int64_t period_us = 1;  // declared
-    // A stamp may be so much later than another one: where it proves the period, and where it
-    // refutes it.
+    // Largest lateness of a stamp against another one: for a proof of the period, and for its
+    // refutation.
     std::int64_t right_us = 0, wrong_us = 0;
-    // Of so many stamps in a row the one that is least late stands for all: the others may be late
-    // by any time.
+    // The least late of so many stamps in a row represents all of them: the others may be late by
+    // any time.
     std::uint32_t unit = 1;
 };
 
-/// Whether `samples` periods that lasted `elapsed_us` show the period, with all that the two stamps
-/// may be off.
+/// Whether `samples` periods that lasted `elapsed_us` show the period, with the largest errors of
+/// the two stamps.
 [[nodiscard]] constexpr PeriodVerdict judge_window(const PeriodTerms& terms, std::int64_t samples,
                                                    std::int64_t elapsed_us) noexcept {
     const std::int64_t wanted_us = samples * terms.period_us;
@@ -59,7 +60,7 @@ struct PeriodWatch {
     std::int64_t measured_ns = 0;  // the mean period of the last window that showed something
 };
 
-/// The next stamp belongs to another board, or nobody knows to which sample.
+/// Discards all stamps: the next one belongs to another board, or to an unknown sample.
 constexpr void restart(PeriodWatch& watch) noexcept {
     watch = PeriodWatch{.terms = watch.terms, .measured_ns = watch.measured_ns};
 }

@@ -7,11 +7,11 @@
 
 namespace axg {
 
-/// What a fault does. Zeroed memory means stop.
+/// Reaction to a fault. Zeroed memory means stop.
 enum class Severity : std::uint8_t {
     stop = 0,  // the receiver is INVALID until a person acknowledges: no more snapshots, no permit
     drop,      // the frame is not used; if that lasts, the age of the last snapshot stops
-    ignore,    // counted, nothing else: the frame was not for us, or is no reason to distrust data
+    ignore,    // only counted: the frame was not for us, or is no reason to distrust data
 };
 
 enum class ReceiverFault : std::uint8_t {

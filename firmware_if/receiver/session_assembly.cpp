@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the board says of its session, and with it the lap of each sample: permit version 2 answers
-// for both. Source: docs/reference/board.md, "Session".
+// The session that the board sends, and with it the lap of each sample. The CRC of a version 2
+// permit covers both. Source: docs/reference/board.md, "Session".
 #include "firmware_if/receiver/axis_receiver.hpp"
 
 namespace axg {
 
-/// Counts as SYNC does, whatever became of samples between; whole laps that were lost show with the
-/// next session frame.
+/// Counts as SYNC does, across lost samples too; the next session frame reveals whole laps that
+/// were lost.
 void AxisReceiver::number_sample(std::uint8_t sync_counter) noexcept {
     if (!has_last_) {
         // One lap more, so that a sample of the lap before has a number too.
@@ -16,7 +16,7 @@ void AxisReceiver::number_sample(std::uint8_t sync_counter) noexcept {
     sync_sample_ += (sync_counter + kSyncCounterMax - last_sync_counter_) % kSyncCounterMax;
 }
 
-/// Before the first sample there is nothing to number laps by: the next frame comes in 100 ms.
+/// Without a sample there are no laps to number: the next frame comes in 100 ms.
 ReceiverEvent AxisReceiver::on_session_frame(const CanFrame& frame) noexcept {
     Session session;
     const FrameStatus status = decode_session(set_.session_id, frame, session);

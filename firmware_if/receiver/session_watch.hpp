@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which lap each sample of the guard has on the board: the guard numbers laps by its own samples,
-// and the board's session frames have to agree. A bus that holds everything for whole laps is found
-// by the first session frame that does not. Source: docs/reference/board.md, "Session".
+// and the board's session frames have to agree. The first one that does not reveals a bus that
+// delays all frames by whole laps. Source: docs/reference/board.md, "Session".
 #pragma once
 
 #include <cstdint>
@@ -42,7 +42,7 @@ class SessionWatch {
     }
 
     [[nodiscard]] bool has_session() const noexcept { return has_session_; }
-    /// What a permit for this sample answers for. Precondition: has_session().
+    /// Nonce and lap for a permit for this sample. Precondition: has_session().
     [[nodiscard]] std::uint32_t nonce() const noexcept { return nonce_; }
     [[nodiscard]] std::uint16_t lap_of(std::uint64_t sample) const noexcept {
         return static_cast<std::uint16_t>(sample / kSyncCounterMax + offset_);

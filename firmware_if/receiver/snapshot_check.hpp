@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether a coherent snapshot can be true: travel, speed, standstill. The last line of defence
-// behind checksums, which random bytes pass once in a while.
+// behind checksums, which random bytes sometimes pass.
 #pragma once
 
 #include <array>
@@ -17,21 +17,21 @@ struct SnapshotFault {
     std::uint32_t axis = kNoIndex;
 };
 
-/// Keeps the last snapshots and judges the next one. Limits are those of the machine file: the
-/// same numbers that the geometry was pruned with.
+/// Compares each snapshot with the last one. Limits are those of the machine file: the same numbers
+/// that the geometry was pruned with.
 class SnapshotCheck {
   public:
     /// @param takes_jumps  no step is too long
     SnapshotCheck(const Machine& machine, const AxisFrameSet& set, bool takes_jumps) noexcept;
 
     /// Judges `snapshot`, `steps` sample periods after the last one. Positions up to half a count
-    /// beyond the travel are the rounding of the wire and are set to the limit; farther out, what
-    /// position_error explains stays as it is.
+    /// beyond the travel are the rounding of the wire and are set to the limit; farther out, a
+    /// position within position_error is left unchanged.
     /// @param raw  counts on the wire; standstill is bit-equality of these
     [[nodiscard]] SnapshotFault check(AxisSnapshot& snapshot,
                                       const std::array<std::int64_t, kAxesMax>& raw,
                                       std::uint32_t steps) noexcept;
-    /// Forgets the last snapshots.
+    /// Discards the last snapshot.
     void reset() noexcept { is_known_ = false; }
 
   private:
@@ -49,7 +49,7 @@ class SnapshotCheck {
     std::uint64_t frozen_max_ = 1;
     std::uint64_t frozen_ = 0;  // sample periods of standstill under mode moving
     bool takes_jumps_ = false;
-    bool is_known_ = false;  // a snapshot is behind us
+    bool is_known_ = false;  // there is a last snapshot
     std::array<double, kAxesMax> last_position_{};
     std::array<std::int64_t, kAxesMax> last_raw_{};
 };

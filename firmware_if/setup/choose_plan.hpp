@@ -15,8 +15,8 @@
 namespace axg {
 
 /// The plan of the machine file with its lists shortened or lengthened: step kPlanStepAsStated has
-/// them as stated. Where time is short triangles are shortened first and rows last: a row proves
-/// most for its time (docs/measurements/bounded-cycle.md).
+/// them as stated. Lower steps shorten triangles first and rows last: a row proves most for its
+/// time (docs/measurements/bounded-cycle.md).
 inline constexpr std::uint32_t kPlanSteps = 7, kPlanStepAsStated = 3;
 /// @param tasks  pairs with each tool (stop_tasks)
 /// @param step   below kPlanSteps
@@ -31,7 +31,7 @@ struct ChosenPlan {
     std::string words;                   // what was measured and chosen, or why nothing may run
 };
 
-/// Takes some seconds. A plan that the machine file pins is measured and judged, nothing else.
+/// Needs some seconds. If the machine file pins a plan, measures and judges only that one.
 /// Empty, with `fault` set: it could not be measured.
 [[nodiscard]] std::optional<ChosenPlan> choose_plan(const LoadedMachine& loaded,
                                                     std::string& fault);

@@ -76,7 +76,7 @@ MemoryCopier::MemoryCopier()
     : memory_(2 * kCopiedBytes), thread_([this] {
           while (!is_over_.load(std::memory_order_relaxed)) {
               std::memcpy(memory_.data(), memory_.data() + kCopiedBytes, kCopiedBytes);
-              asm volatile("" : : "r"(memory_.data()) : "memory");  // it is wanted
+              asm volatile("" : : "r"(memory_.data()) : "memory");  // not optimized out
           }
       }) {}
 

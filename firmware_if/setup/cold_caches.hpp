@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a cycle finds in the caches: nothing of its data, nothing of its code, or a copier beside it
-// that takes memory and shared caches.
+// Cache states for the measurement of a cycle: without its data, without its code, or with a thread
+// that copies memory and so uses bandwidth and shared caches.
 #pragma once
 
 #include <atomic>
@@ -17,12 +17,12 @@ class ColdCaches {
     /// Memory of twice the largest cache that this processor reports, within 8 and 64 MiB.
     ColdCaches();
 
-    /// Drives what lies in the caches out of them.
+    /// Evicts all other data from the caches.
     void write_through() noexcept;
-    /// The same of this memory alone, out of every cache, whatever its size. No effect where
-    /// programs may not do so.
+    /// Evicts only this memory, from every cache, whatever its size. No effect on processors other
+    /// than x86-64 and AArch64.
     static void flush(std::span<const std::byte> memory) noexcept;
-    /// And of all code of this program and its libraries.
+    /// Evicts all code of this program and its libraries.
     static void flush_code() noexcept;
 
   private:

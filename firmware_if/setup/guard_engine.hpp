@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The engines over a machine's surfaces (firmware_if/setup/surface_list.hpp), and what is made of
-// them.
+// Creates the engines over a machine's surfaces (firmware_if/setup/surface_list.hpp), and the parts
+// that use them.
 #pragma once
 
 #include <cstdint>
@@ -25,10 +25,10 @@ namespace axg {
                                                         std::string& fault,
                                                         std::uint32_t multiprocessors = 0);
 
-/// Tree levels of pairs of nodes that two of the machine's surfaces may take to open.
+/// Upper bound of the tree levels in a traversal of two of the machine's surfaces.
 [[nodiscard]] std::uint32_t tree_levels_of(const LoadedMachine& loaded);
 
-/// Of the whole surfaces, on the trees of `engine`, which must outlive it. Empty: memory
+/// Tests the whole surfaces, on the trees of `engine`, which must outlive it. Empty: memory
 /// ran out.
 /// @param engine  of make_engine
 [[nodiscard]] std::optional<ContainmentTest> make_containment_test(const LoadedMachine& loaded,

@@ -22,7 +22,7 @@ struct GuardParts {
     GuardParts(const GuardParts&) = delete;  // the containment test uses the trees of the engine
     GuardParts& operator=(const GuardParts&) = delete;
 
-    /// Empty: all of them are there. Else what is missing, and what to do.
+    /// Empty: no part is missing. Else names the missing part, and the remedy.
     [[nodiscard]] std::string_view fault() const noexcept;
 
     std::optional<CpuEngine> engine;

@@ -30,7 +30,7 @@ void print(const std::vector<ConfigFault>& faults, const std::string& file, std:
     std::fprintf(messages, "%s", fault_summary(file, faults.size()).c_str());
 }
 
-/// Where the machine file asks for it.
+/// No effect unless the machine file sets guard.travel_proofs.
 void prune_never_colliding(LoadedMachine& loaded, const LoadProgress& progress) {
     const Machine& machine = loaded.machine;
     std::vector<std::string>& notes = loaded.meshes.notes;

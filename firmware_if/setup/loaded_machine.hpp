@@ -11,7 +11,7 @@
 
 namespace axg {
 
-/// Of a compiled machine, `source` is the machine file.
+/// `source` is the machine file, for a compiled machine too.
 using LoadedMachine = CompiledMachine;
 
 /// The line behind the faults of a machine file: their number, and what to do. Empty where there is
@@ -22,8 +22,8 @@ using LoadedMachine = CompiledMachine;
 using LoadProgress = std::function<void(double share)>;
 
 /// Reads the machine file, then the meshes it names; or a compiled machine, which needs no other
-/// file. False after faults: all of them are on `messages`, one a line, with the number of them
-/// behind; `out` is untouched.
+/// file. False after faults: prints all of them on `messages`, one a line, then their number;
+/// `out` is untouched.
 /// @param mesh_root  folder that the machine file's meshes are named from; empty: its own
 [[nodiscard]] bool load(const std::string& file, const std::string& mesh_root, LoadedMachine& out,
                         std::FILE* messages, const LoadProgress& progress = {});

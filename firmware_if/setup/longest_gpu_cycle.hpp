@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The longest cycles that a machine may ask of an engine on a GPU, as calls to be constructed and
-// measured: every stage of the plan full, one behind the other, or where a jog begins its ladders;
-// in contact mode one batch. Source: docs/guide/gpu.md, "The longest cycle".
+// The longest cycles of a machine on a GPU engine, as calls to be constructed and measured: every
+// stage of the plan full, one after the other, or the ladders of a cycle that begins a jog; in
+// contact mode one batch. Source: docs/guide/gpu.md, "The longest cycle".
 #pragma once
 
 #include <cstdint>
@@ -21,13 +21,13 @@ namespace axg {
                                                              const CycleDemand& demand,
                                                              std::uint32_t tree_levels);
 
-/// The one of them that took longest, each measured `count` times in each layout. Empty, with
-/// `fault` set: as measure_worst_case.
+/// Measures each cycle `count` times in each layout; returns the longest. Empty, with `fault` set:
+/// as measure_worst_case.
 [[nodiscard]] std::optional<WorstCaseMeasurement> measure_slowest(
     const CudaOptions& options, std::vector<WorstCaseCycle> cycles, std::uint32_t count,
     std::string& fault);
 
-/// What the host does in such a cycle beside the launches, its stages included (CycleDemand); 0 in
+/// Host time of such a cycle without the launches, but with the host's stages (CycleDemand); 0 in
 /// contact mode, where it poses each pair once. Empty, with `fault` set: as measure_host_us.
 [[nodiscard]] std::optional<double> host_share_us(const LoadedMachine& loaded,
                                                   const CycleDemand& demand, std::string& fault);

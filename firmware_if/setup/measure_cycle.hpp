@@ -17,8 +17,8 @@
 
 namespace axg {
 
-/// What a cycle finds: everything in the caches, no data, no code and no data, or all that and
-/// another core that copies memory.
+/// Caches at the start of a cycle: all data and code, no data, neither code nor data, or the last
+/// while another core copies memory.
 enum class CacheCondition : std::uint8_t { warm, cold, code_cold, beside_copier };
 inline constexpr std::array kCacheConditions{CacheCondition::warm, CacheCondition::cold,
                                              CacheCondition::code_cold,
@@ -63,10 +63,10 @@ struct CycleMeasurement {
 [[nodiscard]] std::vector<CycleShape> longest_shapes(const CyclePlan& plan, std::uint32_t tasks,
                                                      bool asks_twice);
 
-/// What the host does in a cycle over an engine on a GPU that answers at once: from snapshot to
-/// decision, the longest of all conditions, numbers of open pairs, and stages in which they are
-/// proven. Its own launches are not in it. Empty, with `fault` set: no memory.
-/// @param host_stages  the CPU engine answers so many first stages, with their lists full
+/// Host time of a cycle over a GPU engine that replies at once, from snapshot to decision, us: the
+/// longest of all conditions, numbers of open pairs, and stages in which they are proven. Excludes
+/// the launches. Empty, with `fault` set: no memory.
+/// @param host_stages  number of first stages that the CPU engine runs, with their lists full
 /// @param poses_parts  as Engine::run_parts; else the host poses every box
 [[nodiscard]] std::optional<double> measure_host_us(const LoadedMachine& loaded,
                                                     const CyclePlan& plan,
@@ -75,7 +75,7 @@ struct CycleMeasurement {
 
 /// Empty, with `fault` set: no such lanes, no memory, lists that do not go together, or a machine
 /// whose boxes end before the plan does.
-/// @param loaded  whose guard is stoppable; of its travel proofs nothing is used
+/// @param loaded  its guard is stoppable; its travel proofs are not used
 [[nodiscard]] std::optional<CycleMeasurement> measure_cycle(const LoadedMachine& loaded,
                                                             const CyclePlan& plan,
                                                             const CycleMeasureOptions& options,

@@ -10,7 +10,7 @@
 namespace axg {
 namespace {
 
-/// A surface, and what it was simplified to where it was.
+/// Adds each surface, simplified where such a version exists, and the whole one.
 void add(const std::vector<Mesh>& whole, const std::vector<Mesh>& simple, SurfaceList& out) {
     for (std::size_t i = 0; i < whole.size(); ++i) {
         const bool is_simple = i < simple.size() && !simple[i].triangles.empty();
@@ -20,7 +20,7 @@ void add(const std::vector<Mesh>& whole, const std::vector<Mesh>& simple, Surfac
     }
 }
 
-/// What is left of a surface is a part of the body that the surface is one of.
+/// Marks a pruned surface as a part of the body that its whole surface belongs to.
 void mark_whole(const Machine& machine, std::uint32_t surface, std::uint32_t body,
                 std::uint32_t against, std::uint32_t tool, SurfaceList& out) {
     if (surface != kNoIndex) {
@@ -29,7 +29,7 @@ void mark_whole(const Machine& machine, std::uint32_t surface, std::uint32_t bod
     }
 }
 
-/// Of the surfaces that pairs have, those that are a part of a body: of which.
+/// Marks the body of each surface of a pair that is only a part of a body.
 void mark_bodies(const Machine& machine, SurfaceList& out) {
     for (const PairSurface& own : machine.pair_surfaces) {
         const std::uint32_t place = pair_mesh_index(machine, own.surface);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every surface that the engines of a machine are given, and the places it has among them: the one
-// list that queries, engines, containment test and pages go by.
+// Every surface of the engines of a machine, and its index among them: queries, engines,
+// containment test and pages all use this list.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +12,15 @@
 
 namespace axg {
 
-/// Ranges of `engines`, one behind the other (core/certificate/pair_queries.hpp), and what the
-/// processor's engine has behind them: it alone runs containment tests, and those are of whole
+/// Surfaces of every engine, in ranges one after the other (core/certificate/pair_queries.hpp),
+/// then those that only the CPU engine has: it runs the containment tests, which need whole
 /// surfaces.
 struct SurfaceList {
     std::vector<const Mesh*> engines;
     std::size_t body_count = 0, tool_count = 0;
     std::vector<const Mesh*> behind;
-    // [engines] the whole surface, the place of its tree among all of the processor's engine, and
-    // the place of the body that it is a part of.
+    // [engines] the whole surface, the index of its tree in the CPU engine, and the index of the
+    // body that it is a part of.
     std::vector<const Mesh*> whole;
     std::vector<std::uint32_t> whole_tree, same_as;
 

@@ -51,9 +51,8 @@ bool is_far(CpuEngine& engine, const Query& query) {
     return result.status == QueryStatus::ok && result.proof == Proof::far;
 }
 
-/// Whether the pair keeps its margin everywhere in the box: the farthest corners of the search
-/// first, so that a pair that comes near is soon found to. False also when `most` queries said
-/// nothing.
+/// Whether the pair is farther apart than its margin everywhere in the box. Searches depth first,
+/// so that it soon finds a pair that comes near. False also when `most` queries did not decide.
 bool is_always_far(const Machine& machine, CpuEngine& engine, const JointBoxTask& task,
                    std::uint64_t most, std::uint64_t& queries) {
     std::array<Pose, kBodiesMax> moved;
@@ -83,7 +82,7 @@ bool is_always_far(const Machine& machine, CpuEngine& engine, const JointBoxTask
     return true;
 }
 
-/// The triangles of a surface, neighbours beside each other: as its tree has them.
+/// The triangles of a surface in the order of its tree: neighbours are next to each other.
 std::vector<std::uint32_t> in_tree_order(const Mesh& mesh) {
     std::vector<std::uint32_t> out;
     const TreeData tree = build_tree(mesh.triangles);
@@ -138,7 +137,7 @@ class PairPruner {
     }
 
   private:
-    /// Marks what touches at some positions: of that nothing can be proven.
+    /// Marks triangles that touch at some positions: no proof about them is possible.
     bool look_around() {
         std::optional<CpuEngine> engine = CpuEngine::create(mesh_, capacities_);
         if (!engine) {
@@ -164,8 +163,8 @@ class PairPruner {
         return true;
     }
 
-    /// Drops the clusters of one side that never collide with what is kept of the other; those that
-    /// may are halved, as long as `effort` allows.
+    /// Drops the clusters of one side that never collide with the remaining triangles of the other;
+    /// halves the others, as long as `effort` allows.
     bool prune_side(int side, std::uint64_t& queries) {
         const std::vector<std::uint32_t>& order = kept_[side];
         const std::size_t least = std::max<std::size_t>(1, order.size() / effort_.clusters);
@@ -204,7 +203,7 @@ class PairPruner {
                            [&](std::uint32_t triangle) { return is_near_[side][triangle]; });
     }
 
-    /// Whether each cluster stays away from what is kept of the other side. Empty: memory ran out.
+    /// Whether each cluster never meets the other side's remaining triangles. Empty: no memory.
     std::optional<std::vector<bool>> are_never_colliding(int side,
                                                          std::span<const Cluster> clusters,
                                                          std::uint64_t& queries) {
@@ -213,7 +212,7 @@ class PairPruner {
         std::vector<std::size_t> queried;
         for (std::size_t i = 0; i < clusters.size(); ++i) {
             if (meshes[0].triangles.empty()) {
-                out[i] = true;  // of the other side nothing was kept
+                out[i] = true;  // the other side has no triangles left
             } else if (!has_near(side, clusters[i])) {
                 queried.push_back(i);
                 meshes.push_back(
@@ -308,7 +307,7 @@ std::optional<std::vector<KeptTriangles>> prove_travel(
             }
             kept.is_apart = kept.a.empty() || kept.b.empty();
             if (kept.is_apart && !is_outside(machine, task, *engine, *containment_test)) {
-                kept.is_apart = false;  // whatever is wrong there, cycles are to see it
+                kept.is_apart = false;  // cycles must detect whatever is wrong there
                 kept.a.resize(kept.whole_a);
                 kept.b.resize(kept.whole_b);
                 std::iota(kept.a.begin(), kept.a.end(), 0U);

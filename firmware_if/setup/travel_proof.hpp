@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The never-colliding set of each pair: proven once for the whole travel, overrun included, and
-// pruned from what a cycle queries. Offline: it allocates and takes its time, counted in
-// queries, so that the same machine gives the same on every processor.
+// pruned from what a cycle queries. Offline: allocates, and limits its effort in queries instead of
+// time, so that the same machine gives the same result on every processor.
 // Source: docs/theory/travel.md; the idea: operating-range pruning in the seed paper.
 #pragma once
 
@@ -17,10 +17,10 @@ namespace axg {
 /// One pair with one tool, in the order of stop_tasks().
 struct KeptTriangles {
     std::uint32_t pair = 0, tool = kNoIndex;  // Machine::pairs, Machine::tools
-    // All that is pruned keeps more than this, for every position in travel_of(machine).
+    // All pruned triangles are farther away than this, for every position in travel_of(machine).
     double distance_mm = 0;
-    bool is_apart = false;  // nothing is kept, and neither body is inside the other
-    // What is kept of what the engine was given for a and for b: indices, in rising order.
+    bool is_apart = false;  // a or b is empty, and neither body is inside the other
+    // Remaining triangles of the engine's surfaces for a and for b: indices, in rising order.
     std::vector<std::uint32_t> a, b;
     std::uint32_t whole_a = 0, whole_b = 0;  // triangles that there are
     std::uint64_t queries = 0;               // run for this pair
@@ -31,7 +31,7 @@ struct KeptTriangles {
 /// Enough for the pairs that never meet; how much more triangles cost to find, and how little they
 /// save: docs/measurements/travel.md.
 struct TravelEffort {
-    std::uint32_t poses = 512;    // at which what touches need not be proven never to
+    std::uint32_t poses = 512;    // at which touching triangles are marked, not proven
     std::uint32_t clusters = 64;  // that a surface is cut into at most
     std::uint32_t queries = 256;  // about one cluster; about a whole pair 64 times as many
 };
@@ -43,8 +43,9 @@ struct TravelEffort {
     const LoadedMachine& loaded, const TravelEffort& effort = {},
     const std::function<void(double share)>& on_progress = {});
 
-/// The engines of `loaded` get what is kept, and its cycles query no more.
-/// @param kept  of prove_travel, for this machine
+/// Restricts the engines of `loaded` to the remaining triangles where that saves time; its cycles
+/// do not query pairs that are apart.
+/// @param kept  result of prove_travel for this machine
 void apply_travel(const std::vector<KeptTriangles>& kept, LoadedMachine& loaded);
 
 }  // namespace axg

@@ -14,7 +14,7 @@
 namespace axg {
 namespace {
 
-// Values that ask less; nobody has measured them.
+// Values that promise less; not measured.
 constexpr double kReactionTimes = 2;   // of the default
 constexpr double kPositionTimes = 10;  // of the default
 constexpr double kJitterShare = 0.1;   // of a period
@@ -30,7 +30,7 @@ double reach_at_rapid(const Machine& machine, std::uint32_t axis) {
            forward_reach(stop_limits(machine, axis), fastest, fastest, free_s);
 }
 
-/// Of an axis that turns round: what its largest acceleration leads to from the turn on.
+/// Reach of an axis that reverses in a stop: at its largest acceleration from the reversal on.
 double reach_of_turn(const Machine& machine, std::uint32_t axis) {
     AxisLimits limits = stop_limits(machine, axis);
     limits.stop_turns_round = true;

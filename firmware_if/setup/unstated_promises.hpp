@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Promises of board and axes that a machine file leaves out: the guard takes a default for true.
-// What each would cost if it were not. Pure.
+// Promises of board and axes that a machine file does not state: the guard assumes a default.
+// Computes how much farther a stop leads if the default is wrong. Pure.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@
 
 namespace axg {
 
-/// One key, and a value that asks less of the machine. Its cost is by how much farther a stop from
-/// rapid would lead with that value, the permit being the shortest.
+/// One key, and a value that promises less. Cost: how much farther a stop from rapid leads with
+/// that value, for the shortest permit.
 struct UnstatedPromise {
     std::string key;         // "guard.board_reaction_ms"
     std::string assumed;     // "2"

@@ -32,7 +32,7 @@ Header front(std::span<const std::byte> bytes) noexcept {
     return header;
 }
 
-/// Calls `take(type, payload)` for each attribute. False: one is cut short.
+/// Calls the function with (type, payload) for each attribute. False: one is cut short.
 template <class Take>
 bool for_each_attribute(std::span<const std::byte> bytes, Take&& take) {
     while (bytes.size() >= sizeof(rtattr)) {

@@ -10,12 +10,12 @@ namespace axg {
 class EndSignals {
   public:
     EndSignals();
-    /// What came after was_sent() looked last ends the program here.
+    /// A signal that arrived after the last was_sent() ends the program here.
     ~EndSignals();
     EndSignals(const EndSignals&) = delete;
     EndSignals& operator=(const EndSignals&) = delete;
 
-    /// Whether one came; takes those that wait.
+    /// Whether one was sent so far; consumes the pending ones.
     [[nodiscard]] bool was_sent() noexcept;
 
   private:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether this machine can keep the guard's time: what is found, what is wrong with it, and the
-// command that mends it. Reads /proc and /sys under a root folder, so that a copy, or a tree that a
-// test made up, is looked at like the machine itself.
+// Checks whether this host meets the guard's timing: findings, faults, and the command that
+// corrects each. Reads /proc and /sys under a root folder, so that it can check a copy, or a tree
+// made by a test, like the host itself.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ struct Finding {
 
 struct SystemRequest {
     std::string root;                   // empty: this machine
-    int bus_cpu = -1, engine_cpu = -1;  // as `run` will be told; -1: none
+    int bus_cpu = -1, engine_cpu = -1;  // as passed to `run`; -1: none
     int priority = 80;
 };
 
@@ -37,7 +37,7 @@ struct SystemRequest {
 /// names processors that are online, isolated ones first, and never the first of the machine.
 [[nodiscard]] std::vector<Finding> check_processors(const SystemRequest& request);
 
-/// @param link  what rtnetlink says of it; empty: not asked, as in a copy
+/// @param link  its state from rtnetlink; empty: not requested, as for a copy
 [[nodiscard]] std::vector<Finding> check_bus(const std::string& root, const std::string& bus,
                                              const std::optional<CanLink>& link);
 

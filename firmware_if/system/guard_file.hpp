@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who may open a file of the guard's state: others could hold its lock, clear its latch, or point
-// either elsewhere.
+// Checks who may open a file of the guard's state: others could hold its lock, clear its latch, or
+// redirect either.
 #pragma once
 
 #include <sys/stat.h>
@@ -9,12 +9,12 @@
 
 namespace axg {
 
-/// Whether it is a plain file that only the guard's user can open. The owner of the folder may have
-/// it as well: what root makes in the folder of the service belongs to the service.
+/// Whether it is a plain file that only the guard's user can open. The owner of the folder may own
+/// it too: a file that root creates in the service's folder belongs to the service.
 /// @param owner  of the folder, which the guard trusts
 [[nodiscard]] bool is_guard_file(const struct stat& status, uid_t owner) noexcept;
 
-/// What is wrong with it, and what was expected.
+/// Text of the fault: what was found, and what was expected.
 /// @param what  lock, or latch
 [[nodiscard]] std::string guard_file_fault(const struct stat& status, const std::string& path,
                                            const char* what);

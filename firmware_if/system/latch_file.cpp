@@ -24,7 +24,7 @@ std::string words(const std::string& path, const char* what) {
            ". Pass a writable folder with --state-dir DIR.";
 }
 
-/// The folder was found to be the guard's when the lock was taken: one_guard.hpp.
+/// OneGuard (one_guard.hpp) has already checked that the folder is the guard's.
 uid_t owner_of_folder(const std::string& path) noexcept {
     const std::size_t end = path.rfind('/');
     const std::string folder = end == std::string::npos ? "." : path.substr(0, end + 1);
@@ -32,8 +32,8 @@ uid_t owner_of_folder(const std::string& path) noexcept {
     return stat(folder.c_str(), &status) == 0 ? status.st_uid : geteuid();
 }
 
-/// A new file appears under its name only when it says "clear": cut off before, there is none. What
-/// root makes in the folder of the service belongs to the service.
+/// A new file gets its name only after it contains "clear": an interrupted creation leaves none. A
+/// file that root creates in the service's folder gets the folder's owner.
 bool make_clear(const std::string& path, uid_t owner) {
     const std::string part = path + ".part";
     const int file = open(part.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0600);
@@ -55,8 +55,8 @@ int open_page(const std::string& path) noexcept {
     return open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
 }
 
-/// Of another length it is no latch that a guard has written: it becomes one that is latched, which
-/// is stored first.
+/// A file of another length is no latch that a guard has written: stores a latched cell first, then
+/// sets the length.
 bool has_page(int file, off_t size_bytes) noexcept {
     LatchCell cell;
     set_latch(cell, true);
@@ -65,7 +65,7 @@ bool has_page(int file, off_t size_bytes) noexcept {
             ftruncate(file, static_cast<off_t>(kPageBytes)) == 0);
 }
 
-/// The same where there is anything behind the cell.
+/// Latches a page with any byte other than 0 behind the cell, and clears those bytes.
 void refuse_the_rest(LatchCell& cell) noexcept {
     const auto rest =
         std::span(reinterpret_cast<std::uint8_t*>(&cell), kPageBytes).subspan(sizeof(LatchCell));

@@ -16,8 +16,8 @@
 namespace axg {
 namespace {
 
-/// The folder itself may be reached through a link: systemd makes one for a dynamic user. Whoever
-/// may write in it could replace the lock, and the latch. Root may use the service's folder.
+/// The path may be a link: systemd creates one for a dynamic user. No other user may write in the
+/// folder, for they could replace the lock and the latch. Root may use the service's folder.
 int open_folder(const std::string& folder, uid_t& owner, std::string& fault) {
     const int opened = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     struct stat status {};
@@ -46,7 +46,7 @@ int open_folder(const std::string& folder, uid_t& owner, std::string& fault) {
     return -1;
 }
 
-/// What root makes in the folder of the service belongs to the service.
+/// A lock that root creates in the service's folder gets the folder's owner.
 int open_lock(int folder, uid_t owner, const std::string& name, const std::string& path,
               std::string& fault) {
     const int file =
@@ -73,7 +73,7 @@ int open_lock(int folder, uid_t owner, const std::string& name, const std::strin
     return -1;
 }
 
-/// What the holder wrote; for people, nothing depends on it.
+/// Process id that the holder wrote into the lock file; used in messages only.
 std::string holder_of(int file) {
     std::array<char, 32> text{};
     const ssize_t size = pread(file, text.data(), text.size() - 1, 0);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One guard for each interface and state directory: a lock on a file that only the guard's user can
-// open, which the kernel releases whatever way the process ends. A name that every local user could
-// take first, as an abstract socket has, would let any of them keep the guard off.
+// open, which the kernel releases whatever way the process ends. Any local user could claim another
+// kind of name first, such as that of an abstract socket, and so prevent the guard's start.
 #pragma once
 
 #include <string>

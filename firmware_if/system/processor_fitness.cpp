@@ -11,7 +11,7 @@
 namespace axg {
 namespace {
 
-constexpr int kProcessorsMax = 1024;  // as --bus-cpu takes them
+constexpr int kProcessorsMax = 1024;  // as --bus-cpu accepts
 
 /// Each in ascending order.
 struct Processors {
@@ -50,7 +50,7 @@ std::vector<int> find_spare(const Processors& have) {
     return spare;
 }
 
-/// A thread keeps the processor that was stated for it, if there is that one to spare.
+/// Assigns each thread its stated processor if that one is spare, else the first spare one.
 Choice choose(const Processors& have, const SystemRequest& request) {
     const std::vector<int> spare = find_spare(have);
     Choice choice{.bus = has(spare, request.bus_cpu) ? request.bus_cpu : -1,

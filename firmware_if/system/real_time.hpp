@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Real-time settings of a thread. Needs no capability, only rlimits (RTPRIO, MEMLOCK);
-// what is refused is said in words, with what would allow it, and the program goes on: the permit
-// ends by itself where the thread is late.
+// a refused setting returns a text with the remedy, and the program continues: the permit ends by
+// itself if the thread is late.
 #pragma once
 
 #include <string>

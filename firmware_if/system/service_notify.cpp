@@ -57,7 +57,7 @@ ServiceNotify::~ServiceNotify() {
 
 void ServiceNotify::work(std::uint32_t period, std::int64_t now_us) noexcept {
     if (period == period_) {
-        return;  // the bus thread stands still, or has not begun: its process is to be ended
+        return;  // the bus thread is blocked or not started: the watchdog has to end the process
     }
     if (!is_ready_) {
         is_ready_ = true;
@@ -80,7 +80,7 @@ void ServiceNotify::status(std::string_view words) noexcept {
     send({text.data(), kKey.size() + size});
 }
 
-/// Lost where the manager is slow: the next one tells the same.
+/// Loses the datagram if the manager is slow: watchdog and status repeat, READY=1 does not.
 void ServiceNotify::send(std::string_view words) noexcept {
     if (socket_ >= 0) {
         [[maybe_unused]] const ssize_t sent =

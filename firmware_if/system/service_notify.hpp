@@ -16,8 +16,8 @@ class ServiceNotify {
     ServiceNotify(const ServiceNotify&) = delete;
     ServiceNotify& operator=(const ServiceNotify&) = delete;
 
-    /// Says that the service is ready when the first period has ended, and feeds the watchdog four
-    /// times as often as it has to be, each time only where periods have ended since.
+    /// Reports the service as ready after the first period, and feeds the watchdog four times as
+    /// often as required, each time only if periods have ended since.
     void work(std::uint32_t period, std::int64_t now_us) noexcept;
     /// One line for `systemctl status`, without a line break.
     void status(std::string_view words) noexcept;

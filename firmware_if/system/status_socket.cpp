@@ -18,7 +18,7 @@
 namespace axg {
 namespace {
 
-constexpr int kAnswerMs = 2000;  // of the whole; a guard that is held for longer has stopped anyway
+constexpr int kAnswerMs = 2000;  // for the reply; a guard held for longer has stopped anyway
 
 /// False: no name of a socket.
 bool set_address(const std::string& path, sockaddr_un& address) noexcept {
@@ -39,7 +39,7 @@ bool connect_to(int socket, const sockaddr_un& address) noexcept {
     return connect(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
 }
 
-/// Whether the name is free, or is that of a socket that nobody serves any more.
+/// Whether the name is free, or is that of a socket that no process serves any more.
 bool is_free(const std::string& path, const sockaddr_un& address, std::string& fault) {
     struct stat status {};
     if (lstat(path.c_str(), &status) != 0) {
@@ -89,7 +89,7 @@ bool await_more(int socket, Clock::time_point until) noexcept {
     }
 }
 
-/// Until the other side closes, or has said more than a status has. False: neither in time.
+/// Reads until the other side closes or has sent the size of a status. False: neither in time.
 bool read_all(int socket, Clock::time_point until, std::string& text) {
     std::array<char, StatusSocket::kTextMax> part{};
     while (text.size() < StatusSocket::kTextMax) {
@@ -189,7 +189,7 @@ int StatusSocket::accept_waiting(Readers& readers) const noexcept {
 
 void StatusSocket::hand_over(std::span<const int> readers, std::span<const char> text) noexcept {
     for (const int reader : readers) {
-        // Whole, or whoever it is has no room even for this, and asks again.
+        // The whole text, unless the reader has no room even for this: it must connect again.
         [[maybe_unused]] const ssize_t sent =
             send(reader, text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
         close(reader);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A socket in the file system that gives everyone who connects one text and takes nothing. A text
-// fits what the kernel keeps for a reader, so it is handed over at once and the connection closed:
-// no reader, slow or hostile, can make the guard wait or remember it.
+// A socket in the file system that sends each client one text and reads nothing. A text fits the
+// kernel's buffer for a reader, so it is sent at once and the connection closed: no reader, slow or
+// hostile, can make the guard wait or store its state.
 #pragma once
 
 #include <array>
@@ -15,8 +15,8 @@ namespace axg {
 
 class StatusSocket {
   public:
-    static constexpr int kBacklog = 16;     // that wait to be served; others are told so
-    static constexpr int kServedATurn = 8;  // connections, then whoever serves rests
+    static constexpr int kBacklog = 16;     // waiting clients; others get an error
+    static constexpr int kServedATurn = 8;  // connections, then the caller pauses
     static constexpr std::size_t kTextMax = 4096;
 
     StatusSocket() = default;
@@ -34,8 +34,8 @@ class StatusSocket {
 
     /// Waits so long for a connection. False: there is none.
     [[nodiscard]] bool await(int wait_ms) const noexcept;
-    /// Hands a text to those who wait, kServedATurn at most. Itself it never waits.
-    /// @param make_text  called once, after they have connected; not where nobody waits
+    /// Sends a text to the waiting clients, kServedATurn at most. Never waits itself.
+    /// @param make_text  called once, after they have connected; not without a client
     /// @return  how many connections were closed, with the text or without
     template <class MakeText>
     int serve(const MakeText& make_text) const {

@@ -24,8 +24,8 @@ SuspendWatch::SuspendWatch(const SuspendClocks& clocks) noexcept : clocks_(clock
     [[maybe_unused]] const bool is_first = has_slept();
 }
 
-/// The time asleep is at least what the clock that was read before says, and at most what the one
-/// read after says, whatever came between.
+/// Bounds the time asleep, however long the thread was held between the calls: from above with the
+/// monotonic clock read before CLOCK_BOOTTIME, from below with the one read after it.
 bool SuspendWatch::has_slept() noexcept {
     const std::int64_t before_us = clocks_.monotonic_us();
     const std::int64_t boot_us = clocks_.boottime_us();

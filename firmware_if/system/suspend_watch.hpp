@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether the computer was suspended: CLOCK_BOOTTIME counts that time, CLOCK_MONOTONIC does not, so
-// the guard's own clock cannot see it. To read both takes two calls; a thread that was held between
+// the guard's own clock cannot see it. Reading both needs two calls; a thread that was held between
 // them must not look like a suspend.
 #pragma once
 

@@ -16,7 +16,7 @@ double speed_for(const Axis& axis, double distance) noexcept {
     return a * (std::sqrt(ramp * ramp + 2 * distance / a) - ramp);
 }
 
-/// The largest speed of an axis, or the one that it keeps, each way.
+/// Speed bound of an axis in each direction.
 struct Kept {
     double down = 0, up = 0;
 
@@ -26,8 +26,8 @@ struct Kept {
     }
 };
 
-/// An axis that is faster slows down, and gets no faster on the way; but the other way round it
-/// keeps what it should.
+/// Bounds for `share_kept`. An axis that is faster may not speed up further in its direction; in
+/// the other direction the share applies.
 Kept kept_by(const Axis& axis, const AxisMotion& now, double share_kept) noexcept {
     const double end =
         now.speed + 0.5 * now.acceleration * std::abs(now.acceleration) / axis.jerk_max;
@@ -36,8 +36,8 @@ Kept kept_by(const Axis& axis, const AxisMotion& now, double share_kept) noexcep
             .up = std::min(most, std::max({least, now.speed, end}))};
 }
 
-/// Whether the axis may do this for a tick: at its end the limits hold, even while the acceleration
-/// returns to zero, and so does the speed where the acceleration passes zero on the way.
+/// Whether this jerk is allowed for a tick: the limits hold at its end, even while the acceleration
+/// returns to zero, and the speed bound holds where the acceleration crosses zero in the tick.
 bool is_legal(const Axis& axis, const Kept& kept, const AxisMotion& now, double jerk,
               double tick_s) noexcept {
     constexpr double kRounding = 1 + 1e-12;
@@ -55,13 +55,13 @@ bool is_legal(const Axis& axis, const Kept& kept, const AxisMotion& now, double 
     return kept.holds(now.speed - 0.5 * now.acceleration * now.acceleration / jerk);
 }
 
-/// What is left of its motion is what a few ticks of jerk could mend.
+/// Whether a few ticks of jerk could end the remaining motion.
 bool nearly_stands(const Axis& axis, const AxisMotion& now, double tick_s) noexcept {
     const double step = axis.jerk_max * tick_s;
     return std::abs(now.acceleration) <= 2 * step && std::abs(now.speed) <= 2 * step * tick_s;
 }
 
-/// And so is what is left of the way: the axis is held.
+/// Whether they could also cover the remaining distance: the axis then stops here.
 bool has_arrived(const Axis& axis, const AxisMotion& now, double target, double tick_s) noexcept {
     const double step = axis.jerk_max * tick_s;
     return nearly_stands(axis, now, tick_s) &&
@@ -74,7 +74,7 @@ double approach_jerk(const Axis& axis, const AxisMotion& now, double target, dou
                      double tick_s, double share_kept) noexcept {
     const double j = axis.jerk_max;
     const Kept kept = kept_by(axis, now, share_kept);
-    // Where it is, and how fast, once it no longer accelerates towards the target.
+    // Position and speed once the axis no longer accelerates towards the target.
     AxisMotion level = now;
     if (now.acceleration * (target - now.position) > 0) {
         level.jerk = std::copysign(j, -now.acceleration);
@@ -92,7 +92,7 @@ double approach_jerk(const Axis& axis, const AxisMotion& now, double target, dou
             return allowed;
         }
     }
-    return now.acceleration > 0 ? -j : j;  // keeps the law from wherever it was kept
+    return now.acceleration > 0 ? -j : j;  // legal again if the axis was legal before
 }
 
 CommandedMotion make_approach(const Machine& machine, const Approach& approach, const double* share,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A motion that means harm within the law: every axis makes for its target as fast as its limits
-// let it, and ends there at rest. What a program might ask for at worst.
+// Worst motion that a program can command: every axis moves to its target as fast as its limits
+// allow, and rests there.
 #pragma once
 
 #include <cstdint>
@@ -17,18 +17,17 @@ struct Approach {
     double tick_s = 1e-3;
 };
 
-/// Speed, acceleration and jerk keep the axis' limits at every instant, and so would the speed if
-/// the acceleration had to go to zero from there. `machine` must outlive the motion.
-/// @param share  of each axis' largest speed, read at every tick, that it may have at most; null:
-///     all of it
-/// @param axis_shares  the same with a share for each axis; null: none has one of its own
+/// Speed, acceleration and jerk stay within the axis' limits at every instant, and the speed would
+/// also if the acceleration had to return to zero from there. `machine` must outlive the motion.
+/// @param share  bound of each axis' speed, read at every tick, as a share of its largest; null: 1
+/// @param axis_shares  bound for each axis, in place of `share`; null: none
 [[nodiscard]] CommandedMotion make_approach(const Machine& machine, const Approach& approach,
                                             const double* share = nullptr,
                                             AxisShares* axis_shares = nullptr);
 
 /// The jerk of one axis for the next tick.
-/// @param share_kept  of its largest speed, that it does not exceed even while its acceleration
-///     returns to zero
+/// @param share_kept  share of its largest speed that the axis does not exceed, even while its
+///     acceleration returns to zero
 [[nodiscard]] double approach_jerk(const Axis& axis, const AxisMotion& now, double target,
                                    double speed_share, double tick_s,
                                    double share_kept = 1) noexcept;

@@ -55,7 +55,7 @@ AxisCapKeeper::Shares AxisCapKeeper::largest_of(const std::vector<Shares>& of) n
     return largest;
 }
 
-/// What the motion is told: the same, of a board that keeps its word.
+/// Returns the shares for the motion: `wanted`, unless the board has a fault.
 AxisCapKeeper::Shares AxisCapKeeper::obeyed(const Shares& wanted) noexcept {
     late_[slot_ % late_.size()] = wanted;
     Shares told = keeping_.fault == CapFault::late ? largest_of(late_) : wanted;

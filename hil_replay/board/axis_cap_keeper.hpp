@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a simulated board keeps a cap of its own for each axis: it tells its planner what each may
-// have, knows from it what each will have, and names a permit when none is faster. Source:
+// Enforces a cap for each axis of a simulated board: sends the bounds to the planner, reads from it
+// the speeds to come, and acknowledges a permit once no axis is faster. Source:
 // docs/reference/board.md, "The cap".
 #pragma once
 
@@ -17,7 +17,7 @@
 
 namespace axg {
 
-/// How a board that says that it keeps the cap of the permits keeps it.
+/// How a board breaks its promise to obey the caps of permits; none: it obeys.
 enum class CapFault : std::uint8_t {
     none = 0,
     late,     // acknowledges at once, and begins to slow down a tenth of a second later
@@ -25,15 +25,15 @@ enum class CapFault : std::uint8_t {
     ignores,  // acknowledges at once, and goes on as before
 };
 inline constexpr std::int64_t kCapLateUs = 100'000;  // CapFault::late
-inline constexpr double kCapShare = 0.98;            // of a cap, that it stays below
-inline constexpr double kCapCounts = 1e-6;  // of 1/250 of rapid: an axis that is slower stands
+inline constexpr double kCapShare = 0.98;            // the board stays below this share of a cap
+inline constexpr double kCapCounts = 1e-6;  // of 1/250 of rapid: a slower axis counts as at rest
 
-/// What an axis has, and what a stop that begins now would bring it to, of its largest speed: it
-/// takes the acceleration away with the jerk that is guaranteed at least.
+/// Highest speed that an axis reaches in a stop from now, as a share of Axis::speed_max: the stop
+/// removes the acceleration with the lowest guaranteed jerk.
 [[nodiscard]] double share_in_stop(const Axis& axis, const AxisMotion& now) noexcept;
 
 struct CapKeeping {
-    double smooth_s = 0;  // the motion comes to what it is told within so much averaging
+    double smooth_s = 0;  // averaging time within which the motion obeys a new share
     CapFault fault = CapFault::none;
 };
 
@@ -42,10 +42,10 @@ class AxisCapKeeper {
     /// `machine` and `shares` must outlive it.
     AxisCapKeeper(const Machine& machine, AxisShares& shares, const CapKeeping& keeping);
 
-    /// The axes now. False: one is faster than what is kept.
+    /// Records the speeds of the axes now. False: an axis exceeds the cap in force.
     bool note(std::span<const AxisMotion> axes) noexcept;
-    /// Once a period, between motion and latch.
-    /// @param most  share of every axis' largest speed, whatever the caps are
+    /// Call once a period, between motion and latch.
+    /// @param most  bound of every axis' share of its largest speed, whatever the caps are
     void keep(PermitWatch& watch, double most, std::int64_t now_us);
     [[nodiscard]] std::uint8_t least_kept() const noexcept;
 
@@ -57,7 +57,7 @@ class AxisCapKeeper {
     const Machine* machine_;
     AxisShares* shares_;
     CapKeeping keeping_;
-    std::vector<Shares> needed_;  // that the planner said, so long as they may act
+    std::vector<Shares> needed_;  // from the planner, while they may act
     std::vector<Shares> late_;
     std::size_t slot_ = 0;
     Shares fastest_{};  // since the last sample

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One simulated axis as it truly moves: pieces of constant jerk, and a stop of its own. Closed
-// forms, so that no step size decides where an axis comes to rest. mm and s, or rad and s.
+// True motion of one simulated axis: pieces of constant jerk, and its own stop. Closed forms, so
+// that the rest position does not depend on a step size. mm and s, or rad and s.
 #pragma once
 
 #include <array>
@@ -16,18 +16,18 @@ struct AxisMotion {
 };
 using AxisMotions = std::array<AxisMotion, kAxesMax>;
 
-/// Where the axis is `seconds` later, at its jerk.
+/// Returns the state of the axis `seconds` later, at its jerk.
 [[nodiscard]] AxisMotion moved_on(const AxisMotion& axis, double seconds) noexcept;
 
 /// A stop of one axis: the acceleration falls at `jerk` to -deceleration, along the motion, and
-/// stays there to standstill. The axis never turns round.
+/// stays there to standstill. The axis reverses only if `way` is set.
 struct Brake {
     double deceleration = 0, jerk = 0;
-    int way = 0;  // 1, -1: what it brakes from; the axis still moves the other way when the stop
-                  // begins, and its acceleration turns it round. 0: the way that it moves
+    int way = 0;  // 1, -1: direction to brake from, although the axis moves the other way when the
+                  // stop begins: its acceleration reverses it. 0: the direction of its motion
 };
 
-/// Brakes for `seconds`; an axis that rests keeps its place.
+/// Brakes for `seconds`; an axis at rest does not move.
 void brake(AxisMotion& axis, const Brake& how, double seconds) noexcept;
 
 [[nodiscard]] constexpr bool is_resting(const AxisMotion& axis) noexcept {

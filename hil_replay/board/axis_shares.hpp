@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a board that keeps a cap of its own for each axis and the planner of its motion tell each
-// other. Source: docs/reference/board.md, "The cap".
+// Data that a board with a cap for each axis exchanges with the planner of its motion. Source:
+// docs/reference/board.md, "The cap".
 #pragma once
 
 #include <array>
@@ -11,10 +11,10 @@ namespace axg {
 
 /// Shares of each axis' largest speed. One planner writes, one board reads, in turn.
 struct AxisShares {
-    // From the board, read at every step: what each axis may have.
+    // From the board, read at every step: bound of each axis.
     std::array<double, kAxesMax> wanted{};
-    // From the planner: what each axis has at most from now on, as its path goes on, if all that is
-    // wanted is kept as soon as the accelerations allow. The largest since the board took it.
+    // From the planner: largest speed of each axis on the rest of its path, if the axes obey
+    // `wanted` as soon as the accelerations allow. Largest value since the board reset it.
     std::array<double, kAxesMax> needed{};
 };
 

@@ -55,7 +55,7 @@ void CanBus::post(BusNode sender, const CanFrame& frame) {
     lost_ += fate == Fate::sent ? 0 : 1;
     delivery.is_lost = fate == Fate::lost;
     if (fate == Fate::unsent || (delivery.is_lost && sender == BusNode::board)) {
-        return;  // nobody is there who hears it
+        return;  // no node receives it
     }
     if (free_slots_.empty()) {
         free_slots_.push_back(static_cast<std::uint32_t>(frames_.size()));

@@ -37,7 +37,7 @@ void ClosedLoop::post_of_board(std::span<const CanFrame> frames) {
     }
 }
 
-/// The next frame that ends before `end_us`, with the guard's timers before it. False: none.
+/// Delivers the next frame that ends by `end_us`, after the timers due before it. False: none.
 bool ClosedLoop::next_event(std::int64_t end_us, CanBus::Delivery& delivery) {
     while (true) {
         const std::int64_t due_us = guard_.next_due_us ? guard_.next_due_us() : INT64_MAX;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Board and guard on one wire, cycle by cycle: what either sends, the other hears when its bits are
-// through. No clock but the board's.
+// Board and guard on one bus, cycle by cycle: each receives the other's frames when their bits have
+// passed. The board's clock is the only one.
 #pragma once
 
 #include <cstdint>
@@ -13,12 +13,13 @@
 
 namespace axg {
 
-/// The guard as the wire sees it. Frames it sends are appended, `time_us` when they are ready.
+/// Interface of the guard to the bus. Appends the frames it sends; `time_us`: when each is ready.
 struct LoopGuard {
     std::function<void(const CanFrame& frame, std::vector<CanFrame>& sent)> on_frame;
-    /// The clock alone, at `next_due_us` and once a cycle; may be empty.
+    /// Time without a frame: at `next_due_us`, and once a cycle if the board sends SYNC; may be
+    /// empty.
     std::function<void(std::int64_t now_us, std::vector<CanFrame>& sent)> on_time;
-    // Of a guard that hears its own frames, and has timers; may be empty.
+    // For a guard that receives its own frames and has timers; may be empty.
     std::function<void(const CanFrame& frame, std::vector<CanFrame>& sent)> on_echo{};
     std::function<std::int64_t()> next_due_us{};
 };
@@ -32,8 +33,8 @@ class ClosedLoop {
           guard_sync_id_(bus.guard_sync_id),
           period_us_(bus.period_us) {}
 
-    /// One sample of the board, and every frame up to the next; where the guard sends SYNC, every
-    /// frame up to it and the sample, or a period without one. False: the board can not send.
+    /// Runs one sample of the board and every frame up to the next. If the guard sends SYNC: every
+    /// frame up to SYNC and the sample, or a period without. False: the board cannot send.
     [[nodiscard]] bool cycle();
 
     [[nodiscard]] const CanBus& bus() const noexcept { return bus_; }

@@ -10,7 +10,7 @@ namespace axg {
 namespace {
 
 constexpr double kSecondsPerUs = 1e-6;
-constexpr double kRestRatio = 1e-9;  // s or s2: of axes that stand, no division by zero
+constexpr double kRestRatio = 1e-9;  // s or s2: avoids division by zero for axes at rest
 
 }  // namespace
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The commands of a board with a look-ahead path: computed so long before the axes follow them, and
-// kept as pieces of constant jerk, so that the board can also stop along them. It shares no code
+// Commands of a board with a look-ahead path: computed that long before the axes follow them, and
+// stored as pieces of constant jerk, so that the board can also stop along them. Shares no code
 // with the guard's view of that path. mm and s, or rad and s; instants in us of the board's clock.
 #pragma once
 
@@ -40,11 +40,11 @@ class CommandedPath {
     /// Whether the motion is over by then.
     [[nodiscard]] bool is_over(double time_us);
 
-    /// How a stop from `begin_us` brakes the rate of the path, in 1/s2 and 1/s3, if no axis may do
-    /// more than it is guaranteed to do: at the slowest rates of the stretch that the stop needs.
+    /// Returns how a stop from `begin_us` brakes the rate of the path, in 1/s2 and 1/s3, so that no
+    /// axis exceeds its guaranteed deceleration and jerk on the stretch that the stop needs.
     [[nodiscard]] Brake gentlest_stop(double begin_us);
 
-    /// No call will request an instant before this one.
+    /// Discards the commands before this instant; no later call may request them.
     void forget_before(double time_us);
 
   private:

@@ -11,7 +11,7 @@ struct Limits {
     double speed, acceleration;
 };
 
-/// Written here once more than in the guard, of which a board must not know.
+/// Repeats the guard's jog_limits(): a board shares no motion code with the guard.
 Limits limits_of(const Machine& machine, std::uint32_t axis) {
     const Axis& a = machine.axes[axis];
     const JogRules& jog = machine.guard.jog;
@@ -27,7 +27,7 @@ CommandedMotion make_jog(const Machine& machine, const JogMotionPlan& plan) {
     return [&machine, plan, speed = 0.0, gone = 0.0](std::span<AxisMotion> axes) mutable {
         const Limits limits = limits_of(machine, plan.move.axis);
         const double gain = limits.acceleration * plan.tick_s;
-        // What is left once this tick is over, should it accelerate on, must do for slowing down.
+        // Distance of this tick, should it accelerate, and of slowing down after it.
         const double faster = std::min(limits.speed, speed + gain);
         const double needed = 0.5 * (speed + faster) * plan.tick_s +
                               0.5 * faster * (faster / limits.acceleration + plan.tick_s);

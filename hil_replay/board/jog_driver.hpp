@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A jog: one axis, one way, for a distance, as fast and as hard as the machine file lets a jog be.
+// A jog: moves one axis in one direction by a distance, at the speed and acceleration that the
+// machine file allows a jog.
 #pragma once
 
 #include "core/certificate/jog.hpp"

@@ -35,8 +35,8 @@ bool LiveLoop::listen() {
 
 bool LiveLoop::cycle() {
     hear_until_latch();
-    // A board that waits has nothing to stop. Its guard may have been stopped before, and can only
-    // be reset while a board says that it stands.
+    // A board that waits has no motion to stop. Its guard may have been stopped before, and can
+    // only be reset while a board reports standstill.
     if (board_.state() == BoardState::waiting && board_.permits().stopped_us() != kNever) {
         board_.acknowledge_stop();
     }
@@ -107,7 +107,7 @@ void LiveLoop::on_arrival(const CanArrival& arrival) {
         emergency.code != EmergencyCode::reset) {
         report_.emergency = emergency;
     }
-    // The axes were moved up to the last sample already: nothing is heard before it.
+    // The axes have already moved to the last sample: no frame may have an earlier time.
     frame.time_us = std::max(frame.time_us - later_us_, latched_us_);
     board_.on_frame(frame);
     CanFrame answer;

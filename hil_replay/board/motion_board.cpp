@@ -12,11 +12,11 @@ namespace axg {
 namespace {
 
 constexpr double kSecondsPerUs = 1e-6;
-constexpr double kStandstillCounts = 0.05;  // axes slower than this a sample count as standing
-constexpr double kOffChangesUs = 5000;      // what an axis is off its path changes in a stop
+constexpr double kStandstillCounts = 0.05;  // a sample; a slower axis counts as at rest
+constexpr double kOffChangesUs = 5000;      // time in which a stop changes the following error
 
-/// The way that an axis is turned to by the acceleration it has while the jerk takes that away; 0:
-/// by none.
+/// Direction (1, -1) into which the acceleration reverses an axis while the jerk removes it; 0: no
+/// reversal.
 int turning_way(const AxisMotion& axis, double jerk) noexcept {
     const double a = axis.acceleration;
     const bool turns = axis.speed * a < 0 && a * a > 2 * jerk * std::abs(axis.speed);
@@ -75,7 +75,7 @@ MotionBoard::MotionBoard(const Machine& machine, std::span<const double> start,
         past_->note(now_us_, axes_);
     }
     const double period_s = machine.can.sample_us * kSecondsPerUs;
-    // What is told now acts on commands that the axes follow later.
+    // A share set now acts on commands that the axes follow later.
     options_.cap_smooth_s += machine.can.look_ahead_samples * period_s;
     shares_.resize(2 + static_cast<std::size_t>(std::ceil(options_.cap_smooth_s / period_s)), 0.0);
     late_shares_.resize(static_cast<std::size_t>(kCapLateUs / machine.can.sample_us) + 1, 1.0);
@@ -90,7 +90,7 @@ MotionBoard::MotionBoard(const Machine& machine, std::span<const double> start,
     }
     path_.emplace(machine, start, std::move(motion_), options.tick_us);
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-        // As far off as they may be in half of the draws, and to the other side while they stop.
+        // Half of the draws use the largest following error; a stop changes it to a second draw.
         const double most = machine.axes[i].following_error;
         for (double* off : {&off_before_[i], &off_after_[i]}) {
             const bool is_most = random_() % 2 == 0;
@@ -110,7 +110,7 @@ double MotionBoard::off_path(std::size_t axis, std::int64_t now_us) const noexce
     return off_before_[axis] + share * (off_after_[axis] - off_before_[axis]);
 }
 
-/// The axes where they are while this instant of the path is commanded.
+/// Sets the axes to the path at the commanded instant plus the following error.
 void MotionBoard::set_from_path(double commanded_us, std::int64_t now_us) {
     const AxisMotions commanded = path_->at(commanded_us);
     for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
@@ -136,14 +136,14 @@ void MotionBoard::acknowledge_stop() noexcept {
     watch_.acknowledge(next_us_);
 }
 
-/// The permit's end and the guard's stop are found here, before the axes move past them: a sample's
-/// frames arrive after the last instant that the axes were moved to.
+/// Records the first stop (permit end, guard or person) before the axes move past it: a sample's
+/// frames arrive after the last instant to which the axes moved.
 void MotionBoard::note_stop() {
     stop_.asked_us = first_stop_us();
     stop_.why = watch_.stopped_us() == stop_.asked_us ? BoardStop::guard_said_stop
                 : person_us_ == stop_.asked_us        ? BoardStop::person_said_stop
                                                       : BoardStop::permit_ran_out;
-    // Half of the stops take the longest reaction: the worst case is not left to luck.
+    // Half of the stops use the longest reaction: the worst case does not depend on luck.
     const auto reaction_max = static_cast<double>(options_.reaction_us_max);
     const double reaction_us = random_() % 2 == 0 ? reaction_max : between(0, reaction_max);
     stop_.brake_us = stop_.asked_us + static_cast<std::int64_t>(reaction_us);
@@ -173,7 +173,7 @@ void MotionBoard::begin_braking() {
     }
 }
 
-/// Follows the commanded motion, tick by tick; no stop lies before `until_us`.
+/// Follows the commanded motion, tick by tick; no braking begins before `until_us`.
 void MotionBoard::drive(std::int64_t until_us) {
     const std::size_t count = machine_.axes.size();
     while (now_us_ < until_us && state_ == BoardState::moving) {
@@ -213,10 +213,10 @@ void MotionBoard::note_speeds() noexcept {
     cap_breaches_ += fastest * kSpeedCapRapid > kept_cap_ + kCapCounts ? 1U : 0U;
 }
 
-/// Once a period, between motion and latch. It slows down where that is ordered, and names the
-/// permit when no axis is faster, nor will be by what was commanded; it speeds up when it may.
+/// Called once a period, between motion and latch. Slows down if ordered, acknowledges the permit
+/// once no axis is faster or will be by earlier commands, and speeds up if allowed.
 void MotionBoard::keep_cap() {
-    // A stop along the path goes on through commands that are older than what was told since.
+    // A stop along the path runs through commands that are older than the newest share.
     const bool is_behind =
         state_ == BoardState::braking && machine_.guard.promise == StopPromise::path_keeping;
     if (!keeps_cap() || is_behind) {
@@ -255,7 +255,7 @@ void MotionBoard::keep_cap() {
     }
 }
 
-/// The same, along commands that were computed before.
+/// Does the same as drive(), along commands that were computed before.
 void MotionBoard::follow(std::int64_t until_us) {
     const auto until = static_cast<double>(until_us);
     set_from_path(until, until_us);
@@ -286,7 +286,7 @@ void MotionBoard::brake_for(std::int64_t until_us) {
     }
 }
 
-/// A path may rest on its way: what counts is that nothing goes along it any more.
+/// A path may contain rests, so the stop along it ends when its rate is 0 and no error changes.
 bool MotionBoard::has_settled(std::int64_t now_us) const noexcept {
     if (machine_.guard.promise != StopPromise::path_keeping) {
         return std::all_of(axes().begin(), axes().end(), is_resting);
@@ -294,7 +294,7 @@ bool MotionBoard::has_settled(std::int64_t now_us) const noexcept {
     return is_resting(rate_) && static_cast<double>(now_us - stop_.brake_us) >= kOffChangesUs;
 }
 
-/// All axes at rest: the stop is over.
+/// Ends the stop once all axes are at rest.
 void MotionBoard::settle(std::int64_t now_us) {
     if (has_settled(now_us)) {
         state_ = BoardState::stopped;
@@ -324,7 +324,7 @@ void MotionBoard::advance_part(std::int64_t until_us) {
     now_us_ = until_us;
 }
 
-/// In parts so short that positions between them are known, where those are sent.
+/// Advances in parts of at most kPastPartUs if the board sends past positions, and notes each.
 void MotionBoard::advance_noted(std::int64_t until_us) {
     while (past_ && now_us_ < until_us) {
         advance_part(std::min(until_us, now_us_ + kPastPartUs));
@@ -347,7 +347,7 @@ void MotionBoard::advance(std::int64_t until_us) {
     }
 }
 
-/// As old as it may be, as young, or anything between.
+/// Draws the position's age: the largest, the least or one between, each in a third of the draws.
 double MotionBoard::latched_position(std::uint32_t axis) {
     if (!past_) {
         return axes_[axis].position;
@@ -362,7 +362,7 @@ double MotionBoard::latched_position(std::uint32_t axis) {
 AxisSnapshot MotionBoard::snapshot_now(std::int64_t nominal_us, std::int64_t latched_us) {
     AxisSnapshot snapshot;
     snapshot.sample = sample_;
-    snapshot.latched_us = nominal_us;  // ends SYNC; what was latched is what the axes are now
+    snapshot.latched_us = nominal_us;  // end of SYNC; the positions are those of now_us_
     snapshot.arrived_us = latched_us;
     snapshot.axis_count = static_cast<std::uint32_t>(machine_.axes.size());
     snapshot.tool = tool_;
@@ -410,7 +410,7 @@ void MotionBoard::begin_if_permitted() {
     watch_.begin(next_us_);
     now_us_ = tick_ends_us_ = moving_since_us_ = next_us_;
     state_ = BoardState::moving;
-    if (path_) {  // what was sent before this sample stands
+    if (path_) {  // points sent before this sample remain valid
         path_->begin(nominal_us_ + machine_.can.look_ahead_samples * machine_.can.sample_us);
     }
 }
@@ -446,7 +446,7 @@ std::span<const CanFrame> MotionBoard::latch_now(std::uint8_t counter) {
     for (std::uint32_t i = 0; i < encoded_.frame_count; ++i) {
         CanFrame& frame = frames_[i];
         const bool is_sync = frame.id == encoder_.frame_set().sync_id;
-        // SYNC begins so early that it would end at the sample's instant, were the wire free.
+        // SYNC begins early enough to end at the sample's instant if the wire is free.
         frame.time_us = is_sync ? nominal_us_ - bus_time_us(frame, 1'000'000) : next_us_;
     }
     const bool has_session = watch_.take_session(next_us_, frames_[encoded_.frame_count]);

@@ -32,19 +32,19 @@ struct BoardOptions {
     std::int64_t tick_us = 1000;           // of the commanded motion; divides the sample period
     std::int64_t reaction_us_max = 1000;   // t_board: drawn up to this for each stop
     std::int64_t latch_jitter_us_max = 0;  // of a sample's instant, either way
-    ValueAge latched_age{};  // of each position at its latch: the ends, or drawn between them
+    ValueAge latched_age{};  // of each position at its latch: least, most, or drawn between
     double deceleration_factor_max = 2;  // drawn from 1 to this times the guaranteed one
     double jerk_factor_max = 4;          // the same of the jerk
     std::int64_t permit_us = 0;          // of a permit on the board's timer; 0: n T
     bool is_homed = true;
-    std::uint16_t tool = 0;  // in the spindle at the start; 0: Machine::first_tool
-    JogMove jog{};  // it is in jog: one axis, one way, with the permit for that; none: it is not
-    ConfigurationHashes hashes{};  // of the machine that it was given
-    // It keeps all axes within the cap of the permits. The motion reads at every tick which share
-    // of their largest speeds they may have, and comes to it within so many seconds of averaging.
+    std::uint16_t tool = 0;        // in the spindle at the start; 0: Machine::first_tool
+    JogMove jog{};                 // one axis, one direction, under jog permits; none: no jog
+    ConfigurationHashes hashes{};  // of the machine that the board was configured for
+    // Bounds all axes by the cap of the permits. The motion reads the bound at every tick, as a
+    // share of their largest speeds, and obeys it within `cap_smooth_s` seconds of averaging.
     CapPromise cap = CapPromise::none;
-    double* speed_share = nullptr;      // null: it keeps no cap, whatever is promised
-    AxisShares* axis_shares = nullptr;  // in its place: each axis keeps a cap of its own
+    double* speed_share = nullptr;      // both null: the board obeys no cap, whatever `cap` is
+    AxisShares* axis_shares = nullptr;  // in place of `speed_share`: a cap for each axis
     double cap_smooth_s = 0;
     double slow_share = 1;  // under a permit with the word slow
     CapFault cap_fault = CapFault::none;
@@ -66,7 +66,7 @@ struct BoardStopRecord {
     BoardStop why = BoardStop::none;
     std::int64_t asked_us = 0;      // the permit's end, or the arrival of the stop
     std::int64_t brake_us = 0;      // asked_us and the reaction
-    std::int64_t certified_us = 0;  // the newest sample with a permit, when braking began
+    std::int64_t certified_us = 0;  // the newest sample with a permit, when the stop was noted
     std::int64_t rest_us = 0;
 };
 
@@ -79,24 +79,24 @@ class MotionBoard {
     MotionBoard(const Machine& machine, std::span<const double> start, CommandedMotion motion,
                 const BoardOptions& options);
 
-    /// Calls `observe` every `every_us` of motion, and where the axes come to rest.
+    /// Calls `observe` every `every_us` of motion, and when the axes reach standstill.
     void watch(AxisObserver observe, std::int64_t every_us);
 
     /// Instant of the next sample.
     [[nodiscard]] std::int64_t next_latch_us() const noexcept { return next_us_; }
     /// Moves the axes up to the sample's instant and latches them.
     /// @return  its frames, `time_us` when each is ready; valid until the next call. Empty: the
-    ///     positions do not fit the frames (encode_status() says why)
+    ///     positions do not fit the frames (see encode_status())
     [[nodiscard]] std::span<const CanFrame> latch();
-    /// The same where the guard sends SYNC: one with this counter ended now, half a period after
-    /// next_latch_us() at the latest. Its frames have no SYNC.
+    /// The same if the guard sends SYNC: one with this counter ended at `ended_us`, at most half a
+    /// period after next_latch_us(). The returned frames contain no SYNC.
     [[nodiscard]] std::span<const CanFrame> latch_on_sync(std::uint8_t counter,
                                                           std::int64_t ended_us);
-    /// That SYNC did not come: the axes go on, and nothing is latched.
+    /// The guard's SYNC did not arrive: the axes move on, and the board latches no sample.
     void pass_without_sync();
-    /// A frame of the guard. Its end must not lie before the last sample.
+    /// Processes a frame of the guard. It must not end before the last sample.
     void on_frame(const CanFrame& frame) { watch_.on_frame(frame); }
-    /// What it answers to that frame at once: its own hash of the part. False: nothing.
+    /// Outputs the immediate reply to that frame: the board's own hash of the part. False: none.
     [[nodiscard]] bool take_answer(std::int64_t now_us, CanFrame& out) {
         return watch_.take_hash(now_us, out);
     }
@@ -104,9 +104,9 @@ class MotionBoard {
     void stop_by_person(std::int64_t now_us) noexcept {
         person_us_ = person_us_ == kNever ? now_us : person_us_;
     }
-    /// A person acknowledges a stop that came while the board waited: it may still begin, with a
-    /// permit that comes after this. Permit 2: not while the guard goes on to say stop, for each
-    /// time has a nonce. Precondition: it waits.
+    /// A person acknowledges a stop that arrived while the board waited: motion may still begin,
+    /// with a later permit. Version 2: no effect while the guard still sends stop, because each
+    /// arming needs a nonce. Precondition: state is waiting.
     void acknowledge_stop() noexcept;
 
     [[nodiscard]] BoardState state() const noexcept { return state_; }
@@ -121,13 +121,13 @@ class MotionBoard {
         return {axes_.data(), machine_.axes.size()};
     }
     [[nodiscard]] std::uint16_t tool() const noexcept { return tool_; }
-    /// Of the program, where the axes are; 0: of none.
+    /// Line of the program that the axes follow; 0: none.
     [[nodiscard]] std::uint32_t line() const noexcept { return line_; }
     [[nodiscard]] std::uint64_t samples() const noexcept { return sample_; }
     [[nodiscard]] std::int64_t moving_since_us() const noexcept { return moving_since_us_; }
     [[nodiscard]] EncodeResult encode_status() const noexcept { return encoded_; }
-    /// With an enforced cap: what it keeps now, 1/250 of rapid, and in how many ticks and stops it
-    /// was faster.
+    /// With an enforced cap: the cap in force, 1/250 of rapid, and how many checks of the speeds
+    /// found an axis faster.
     [[nodiscard]] std::uint8_t kept_cap() const noexcept { return kept_cap_; }
     [[nodiscard]] std::uint64_t cap_breaches() const noexcept { return cap_breaches_; }
 
@@ -170,11 +170,11 @@ class MotionBoard {
     BoardState state_ = BoardState::waiting;
     BoardStopRecord stop_;
     AxisMotions axes_{};              // at now_us_
-    std::optional<PastMotion> past_;  // where positions have an age
+    std::optional<PastMotion> past_;  // if positions have an age
     std::array<Brake, kAxesMax> brakes_{};
-    // Where there is a look-ahead path: axes_ is what the path commands and what they are off it.
+    // With a look-ahead path, axes_ is the commanded position plus the following error.
     std::optional<CommandedPath> path_;
-    std::array<double, kAxesMax> off_before_{}, off_after_{};  // of the stop
+    std::array<double, kAxesMax> off_before_{}, off_after_{};  // a stop begins
     AxisMotion rate_{};                                        // s of the path since braking began
     Brake rate_brake_;
     std::int64_t now_us_ = kBoardStartUs, tick_ends_us_ = kBoardStartUs;
@@ -187,9 +187,9 @@ class MotionBoard {
     std::array<double, kAxesMax> sent_{};
     std::uint16_t sent_tool_ = 0;
 
-    std::vector<double> shares_;  // that were commanded, so long as they may act
+    std::vector<double> shares_;  // commanded, while they may act
     std::size_t share_slot_ = 0, late_slot_ = 0;
-    double fastest_ = 0;  // share of rapid that an axis had or may come to, since the last sample
+    double fastest_ = 0;  // largest share_in_stop() of any axis since the last sample
     std::uint8_t kept_cap_ = 0;
     std::uint64_t cap_breaches_ = 0;
     std::vector<double> late_shares_;

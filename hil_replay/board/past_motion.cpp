@@ -8,7 +8,7 @@ namespace axg {
 namespace {
 
 constexpr double kPastSecondsPerUs = 1e-6;
-constexpr std::int64_t kShortestPartUs = 50;  // beside parts of full length, those that ticks cut
+constexpr std::int64_t kShortestPartUs = 50;  // ticks cut the parts; full ones are longer
 
 }  // namespace
 
@@ -19,7 +19,7 @@ void PastMotion::note(std::int64_t time_us, const AxisMotions& axes) {
     notes_[count_++ % notes_.size()] = {time_us, axes};
 }
 
-/// A cubic through two positions, with the speeds there: exact at a constant jerk.
+/// Evaluates a cubic through two positions and their speeds: exact at a constant jerk.
 double PastMotion::position(std::int64_t time_us, std::size_t axis) const {
     const std::size_t kept = std::min(count_, notes_.size());
     std::size_t before = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the axes were a short time ago: for a board whose frames carry positions of before, as a
-// pipelined or latched register makes them. mm and s, or rad and s; instants in us.
+// Positions of the axes a short time ago, for a board whose frames contain older positions, as from
+// a pipelined or latched register. mm and s, or rad and s; instants in us.
 #pragma once
 
 #include <cstdint>
@@ -10,18 +10,19 @@
 
 namespace axg {
 
-/// Between two notes an axis moves at a constant jerk, but for what it changes in so short a time.
+/// Longest time between two notes of moving axes; position() assumes a constant jerk in between.
 inline constexpr std::int64_t kPastPartUs = 250;
 
 class PastMotion {
   public:
-    /// @param longest_us  how far back it is asked for
+    /// @param longest_us  largest age of a position that position() returns
     explicit PastMotion(std::int64_t longest_us);
 
-    /// Instants that do not go back, at most kPastPartUs apart where axes move.
+    /// Stores the axes at an instant. Instants do not decrease, and are at most kPastPartUs apart
+    /// while axes move.
     void note(std::int64_t time_us, const AxisMotions& axes);
-    /// Before the first note, or beyond what is kept: the oldest position that is known.
-    /// Precondition: one was noted, at this instant or later.
+    /// Returns the position at an instant; the oldest stored one if all notes are later.
+    /// Precondition: a note exists, at this instant or later.
     [[nodiscard]] double position(std::int64_t time_us, std::size_t axis) const;
 
   private:

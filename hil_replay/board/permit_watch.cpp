@@ -10,10 +10,10 @@ namespace axg {
 
 namespace {
 
-// Nonces in a row: their checksums differ, as the library wants it.
+// Consecutive nonces: their checksums differ, as the library requires.
 constexpr std::uint32_t kFirstNonce = 0x5EED00;
-// The library's instants are this later than those of the board, so that it has rested long enough
-// before the board's time begins.
+// Library time minus board time, so that the library counts enough rest before the board's time
+// begins.
 constexpr std::int64_t kPowerUpUs = 10'000'000;
 constexpr std::int64_t kQuietPeriods = 2;  // without a stop of the guard
 
@@ -31,7 +31,7 @@ PermitTimes times_of(const CanLayout& layout) noexcept {
             .twin_max_us = 2 * std::int64_t{layout.sample_us}};
 }
 
-/// A frame as the library has it.
+/// Converts a frame to the library's type.
 axg_board_can_frame library_frame(const CanFrame& frame) noexcept {
     axg_board_can_frame out{};
     out.id = frame.id;
@@ -50,7 +50,7 @@ CanFrame board_frame(const axg_board_can_frame& made, std::int64_t now_us) noexc
     return out;
 }
 
-/// Of a permit's twin, which is inverted.
+/// Returns n of a permit from its inverted twin.
 std::uint8_t n_of(const CanFrame& twin) noexcept {
     return static_cast<std::uint8_t>((twin.data[7] ^ 0xFFU) >> 4U);
 }
@@ -74,7 +74,7 @@ PermitWatch::PermitWatch(const CanLayout& layout, bool is_jogging, std::int64_t 
     }
 }
 
-/// Its frames and axes are those of MotionBoard: the library judges permits and hashes.
+/// MotionBoard handles frames and axes: the library only judges permits and hashes.
 void PermitWatch::power_up() noexcept {
     axg_board_options options{};
     options.period_us = layout_.sample_us;
@@ -252,7 +252,7 @@ void PermitWatch::note_permit(std::uint64_t now_us, std::uint8_t samples) noexce
     speed_cap_ = *std::min_element(std::begin(last.caps.of), std::end(last.caps.of));
     samples_ = samples;
     is_slow_ = last.word == AXG_BOARD_WORD_SLOW;
-    // The first two after arming, or one that ends before an older one.
+    // Does not count: one of the first two after arming, or one that ends before an older one.
     if (!motion.may_move || motion.end_us != last.end_us) {
         return;
     }
@@ -263,7 +263,7 @@ void PermitWatch::note_permit(std::uint64_t now_us, std::uint8_t samples) noexce
 
 void PermitWatch::on_permit(const Permit& permit, std::int64_t now_us) noexcept {
     if (permit.word == PermitWord::stop) {
-        // Before the first permit this word says "not yet": nothing moves that could be stopped.
+        // Before the first permit this word means "not yet": no motion exists to be stopped.
         stopped_us_ = stopped_us_ == kNever && permits_ > 0 ? now_us : stopped_us_;
         return;
     }

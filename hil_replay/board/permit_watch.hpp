@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the simulated motion board reads the guard: it may move while a valid permit is in force, and
-// no longer. Permits of version 2 are read by the library for boards, firmware_if/board, as
-// firmware would; those of version 1 by the rules of docs/reference/protocol.md, "From the guard".
+// Reads the guard's frames for the simulated motion board, which may move only while a valid permit
+// is in force. The library for boards, firmware_if/board, reads permits of version 2, as in
+// firmware; version 1 follows docs/reference/protocol.md, "From the guard".
 #pragma once
 
 #include <array>
@@ -19,16 +19,16 @@ inline constexpr std::int64_t kNever = INT64_MAX;
 /// A cap for each bit of a permit's mask, 1/250 of rapid.
 using CapGroups = std::array<std::uint8_t, AXG_BOARD_CAP_GROUPS>;
 
-/// A permit for sample k holds until t_k + n T on the board's own timer; t_k is the instant at
-/// which the board latched sample k. A pair that is late, lost or damaged is not used, and the last
-/// one runs out by itself; the word for stop and the stop frame end the motion at once.
+/// A permit for sample k is valid until t_k + n T on the board's own timer; t_k is the instant at
+/// which the board latched sample k. The board ignores a pair that is late, lost or damaged, and
+/// the last permit expires; the stop word and the stop frame end the motion at once.
 class PermitWatch {
   public:
-    /// @param is_jogging  the board says so in its samples: their permits are for the jog, and for
-    ///     nothing else; any other time such a permit is none
-    /// @param permit_us  how long a permit holds on the board's timer; 0: n T, as it must
-    /// @param hashes  of the machine that the board was given, where the layout has their ids
-    /// @param cap  version 2: whether it keeps all axes within the cap of the permits
+    /// @param is_jogging  the board reports a jog in its samples: only jog permits count; without
+    ///     a jog they do not count
+    /// @param permit_us  validity of a permit on the board's timer; 0: n T, as required
+    /// @param hashes  of the board's machine, used if the layout has their ids
+    /// @param cap  version 2: whether the board bounds all axes by the cap of the permits
     explicit PermitWatch(const CanLayout& layout, bool is_jogging = false,
                          std::int64_t permit_us = 0, const ConfigurationHashes& hashes = {},
                          CapPromise cap = CapPromise::none) noexcept;
@@ -37,25 +37,25 @@ class PermitWatch {
     void on_latch(std::uint8_t sync_counter, std::int64_t latched_us) noexcept;
     /// Version 2: the session frame that leaves with that sample. False: none is due.
     [[nodiscard]] bool take_session(std::int64_t now_us, CanFrame& out) noexcept;
-    /// Version 2: what the flags of that sample say of the permit whose cap the board keeps.
+    /// Version 2: flags of that sample, which name the permit whose cap the board obeys.
     [[nodiscard]] std::uint8_t ack_flags() const noexcept;
-    /// Version 2: the cap that all axes are to come to, 1/250 of rapid.
+    /// Version 2: the cap ordered for all axes, 1/250 of rapid.
     [[nodiscard]] std::uint8_t ordered_cap(std::int64_t now_us) noexcept;
     /// The same for each bit of the mask.
     [[nodiscard]] CapGroups ordered_caps(std::int64_t now_us) noexcept;
     [[nodiscard]] CapGroups keep_caps(const CapGroups& wanted, std::int64_t now_us) noexcept;
-    /// The board keeps all axes below this from now on; a lower one must be true already.
-    /// @return  what it may have
+    /// Bounds all axes by `wanted` from now on; a lower bound than before must already be true.
+    /// @return  the bound to obey
     [[nodiscard]] std::uint8_t keep_cap(std::uint8_t wanted, std::int64_t now_us) noexcept;
-    /// The axes begin to move: from now on a permit that comes after the last one ran out is too
-    /// late.
+    /// The axes begin to move: from now on a permit that arrives after the end of the last one is
+    /// too late.
     void begin(std::int64_t now_us) noexcept;
-    /// They rest. May be reported again.
+    /// The axes are at rest; repeated calls are allowed.
     void rest(std::int64_t now_us) noexcept;
-    /// A person looked at a stop that came while nothing moved, and armed: what came before counts
-    /// no more. Version 2: not while the guard still sends stop.
+    /// A person acknowledged a stop during standstill, and armed: discards all earlier permits and
+    /// stops. Version 2: no effect while the guard still sends stop.
     void acknowledge(std::int64_t now_us) noexcept;
-    /// A frame of the guard, in order of arrival.
+    /// Processes a frame of the guard; call in order of arrival.
     void on_frame(const CanFrame& frame) noexcept;
     /// The board's own hash, once for each of the guard's. False: none is owed.
     [[nodiscard]] bool take_hash(std::int64_t now_us, CanFrame& out) noexcept;
@@ -64,7 +64,7 @@ class PermitWatch {
     [[nodiscard]] std::int64_t valid_until_us() const noexcept { return valid_until_us_; }
     /// t_k of that permit's sample.
     [[nodiscard]] std::int64_t certified_us() const noexcept { return certified_us_; }
-    /// When the guard asked for a stop; kNever: it has not.
+    /// When the guard ordered a stop; kNever: it has not.
     [[nodiscard]] std::int64_t stopped_us() const noexcept { return stopped_us_; }
     /// Advisory of that permit: 1/250 of rapid; 0 without one.
     [[nodiscard]] std::uint8_t speed_cap() const noexcept { return speed_cap_; }

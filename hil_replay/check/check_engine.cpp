@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The engine's part of `axguard check`: what it reserves, and which pairs touch, or lie one inside
-// the other, wherever the machine stands.
+// The engine's part of `axguard check`: its memory, and which pairs touch, or are one inside the
+// other, at poses of the whole travel.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ constexpr std::uint32_t kPoses = 256;  // of the travel, the zero pose first
 struct Sampled {
     std::uint32_t touching = 0;   // poses at which the surfaces are not proven apart
     std::uint32_t contained = 0;  // those at which they are, and one body is inside the other
-    std::uint32_t not_known = 0;  // those at which that could not be told
+    std::uint32_t not_known = 0;  // those at which containment is not proven
     Containment first = Containment::not_proven;  // at the first pose with one inside the other
     bool starts_inside = false;                   // that is the zero pose
 };
@@ -142,7 +142,7 @@ void report_contacts(CheckReport& report, CpuEngine& engine,
     }
 }
 
-/// Where another engine than the CPU's is wanted: may it run on this device?
+/// Reports whether the requested engine, other than the CPU's, may run on this device.
 void report_choice(CheckReport& report, CpuEngine& engine) {
     const Machine& machine = report.loaded.machine;
     CycleDemand demand = cycle_demand(machine, true);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the promises of a machine file come to in stoppable mode: how long an axis may still move
-// freely, and how far it can get.
+// Computes the effect of the promises of a machine file in stoppable mode: how long an axis may
+// still move freely, and its reach.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 namespace axg {
 namespace {
 
-/// How far from the reported position an axis can get that has stood still for all samples kept.
+/// The reach, from the reported position, of an axis at standstill in all stored samples.
 double reach_at_rest(const Machine& machine, std::uint32_t axis, const SampleErrors& errors,
                      std::uint32_t samples) {
     MotionHistory history;
@@ -31,7 +31,7 @@ double reach_at_rest(const Machine& machine, std::uint32_t axis, const SampleErr
     return stop_reach(stop_limits(machine, axis), now, free_seconds(machine, samples)).high;
 }
 
-/// The farthest that an axis at full speed can get; it has been at that speed for long.
+/// The reach of an axis that has been at full speed for long.
 double reach_at_speed(const Machine& machine, std::uint32_t axis, std::uint32_t samples) {
     const Axis& promised = machine.axes[axis];
     const double full = promised.speed_max;
@@ -122,7 +122,7 @@ void report_obeyed_by(CheckReport& report) {
     }
 }
 
-/// What the machine file leaves out, and the price if its default is not true.
+/// Reports the promises that the machine file does not state, and the cost of a wrong default.
 void report_promises(CheckReport& report) {
     const Machine& machine = report.loaded.machine;
     report.facts.unstated = unstated_promises(machine);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which way each axis moves which bodies, in words, and where the meshes are placed. The words come
-// from the kinematics that the guard uses: a direction that was typed wrongly reads wrongly here.
+// Prints which way each axis moves which bodies, and where the meshes are placed. The text comes
+// from the kinematics that the guard uses: it shows a direction that was typed wrongly.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -43,13 +43,13 @@ std::string point(Vec3d p) {
     return fmt::format("({:.6g}, {:.6g}, {:.6g}) mm", p.x + 0.0, p.y + 0.0, p.z + 0.0);
 }
 
-/// What one step of the axis does to a body at zero: "to -x", "about +z through (0, 0, -380) mm".
+/// Motion of a body at zero by one step of the axis: "to -x", "about +z through (0, 0, -380) mm".
 std::string words_of_step(const Pose& step, AxisKind kind) {
     if (kind == AxisKind::linear) {
         const Vec3d way{step.t[0], step.t[1], step.t[2]};
         return "to " + words_of((1 / length_of(way)) * way);
     }
-    // The axis of a rotation is what its matrix is not symmetric by; sin is the half of that.
+    // The antisymmetric part of a rotation matrix is its axis times sin; this is twice that.
     const Vec3d twice_sin{step.r[2][1] - step.r[1][2], step.r[0][2] - step.r[2][0],
                           step.r[1][0] - step.r[0][1]};
     const Vec3d axis = (1 / length_of(twice_sin)) * twice_sin;

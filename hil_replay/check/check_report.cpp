@@ -21,8 +21,8 @@
 namespace axg {
 namespace {
 
-/// Nobody can say whether another body is inside an open shell; where others are closed, what is
-/// inside those is still seen.
+/// The containment test cannot find a body inside an open shell; it still finds bodies inside the
+/// closed shells of the same surface.
 std::string closure_of(const MeshReport& mesh) {
     if (mesh.open_shells == 0) {
         return "closed";
@@ -117,7 +117,7 @@ std::vector<double> blind_speeds(const Machine& machine) {
 
 namespace {
 
-/// Where the certificate can not know of a frozen encoder.
+/// Speeds of each axis above which the certificate detects a frozen encoder.
 std::string blind_line(const Machine& machine) {
     std::string text;
     const std::vector<double> speeds = blind_speeds(machine);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Report of `axguard check` about a machine, section by section: each prints text, and
-// notes what it measured for the JSON document (check_json.hpp). A section adds nothing to what was
-// computed elsewhere.
+// notes what it measured for the JSON document (check_json.hpp). A section only reports results
+// that were computed elsewhere.
 #pragma once
 
 #include <cstdio>
@@ -28,37 +28,37 @@ struct PairContacts {
     std::uint32_t positions = 0;
     std::uint32_t touching = 0;   // positions at which the surfaces are not proven apart
     std::uint32_t contained = 0;  // those at which they are, and one body is inside the other
-    std::uint32_t not_known = 0;  // those at which that could not be told
+    std::uint32_t not_known = 0;  // those at which containment is not proven
 };
 
 struct EngineFacts {
     std::string lanes;
     std::size_t trees_bytes = 0, lists_bytes = 0, solids_bytes = 0;
-    // Where another engine than the CPU's is wanted; empty: it is not.
+    // If another engine than the CPU's is requested; else empty.
     std::string choice{}, gpu{}, choice_words{};
 };
 
-/// What the sections found, as far as it is not in the machine itself.
+/// Results of the sections that are not in the machine itself.
 struct CheckFacts {
     std::vector<MeshReport> bodies, tools;  // as LoadedMachine::meshes; no mesh: nothing in it
     std::vector<MeshReport> sections;       // those of all tools that have a name, in their order
-    // Where stops keep to the path: for the shortest permit, and for the longest.
+    // If stops are path-keeping: for the shortest permit, and for the longest.
     double look_ahead_s = 0, look_ahead_needed_s = 0, look_ahead_longest_s = 0;
-    std::vector<AxisReach> reaches;   // where they do not
+    std::vector<AxisReach> reaches;   // if they are not
     std::vector<double> jog_reaches;  // where a jog is promised; mm or degrees
     std::vector<UnstatedPromise> unstated;
     std::optional<EngineFacts> engine;
     std::vector<PairContacts> contacts;
-    std::string plan;  // as JSON; empty: none was wanted
+    std::string plan;  // as JSON; empty: not requested
 };
 
 struct CheckReport {
     const LoadedMachine& loaded;
     std::FILE* words;
-    std::vector<std::string> warnings;  // what does not hinder, but ought to be looked at
+    std::vector<std::string> warnings;  // no failures, but a person ought to review them
     EngineChoice engine = EngineChoice::cpu;
     std::uint32_t multiprocessors = 0;  // of the GPU; 0: all
-    int exit_code = 0;                  // other than 0: the engine asked for may not run here
+    int exit_code = 0;                  // other than 0: the requested engine may not run here
     CheckFacts facts{};
 };
 
@@ -88,7 +88,7 @@ void report_guesses(CheckReport& report, const std::string& file);
 [[nodiscard]] const char* to_text(CanFormat format);
 [[nodiscard]] const char* to_text(SignalType type);
 [[nodiscard]] const char* to_text(SignalRole role);
-/// Of one axis, with a factor and an offset.
+/// Whether the signal is a number with a factor and an offset: position or velocity.
 [[nodiscard]] bool is_number(SignalRole role) noexcept;
 [[nodiscard]] bool has_axis(SignalRole role) noexcept;
 

@@ -14,7 +14,7 @@
 namespace axg {
 namespace {
 
-// For one release these start the other program.
+// For one release these commands start axguard-lab.
 constexpr std::array<std::string_view, 4> kLabCommands = {"query", "accuracy", "bench", "chart"};
 
 }  // namespace

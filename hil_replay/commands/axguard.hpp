@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// axguard as a function: the command line in, the exit code out. The demo types its commands
-// through it.
+// axguard as a function: the command line in, the exit code out. The demo runs its commands through
+// it.
 #pragma once
 
 #include <string>

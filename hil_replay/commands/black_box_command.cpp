@@ -32,7 +32,7 @@ std::string_view configuration_of(const BlackBoxFile& black_box) {
     return {black_box.header().configuration.data(), black_box.header().configuration.size()};
 }
 
-/// Another machine gives other verdicts: only on purpose.
+/// Another machine gives other verdicts: only with any_machine.
 bool is_its_machine(const BlackBoxArguments& arguments, const BlackBoxFile& black_box,
                     const LoadedMachine& loaded) {
     const std::string here = configuration_hash(loaded.machine, loaded.meshes);
@@ -166,7 +166,7 @@ void print_why(const ReplayedBlackBox& result, const std::optional<StopWhy>& why
     }
 }
 
-/// From the last frame of a sample until its answer was on the bus.
+/// Time from the last frame of a sample until its permit was on the bus.
 void print_times(const ReplayedBlackBox& result, std::FILE* words) {
     const TimeHistogram& times = result.permit_time;
     if (times.count() != 0) {

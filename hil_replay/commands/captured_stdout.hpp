@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a command prints on stdout, taken for a log in place of the terminal.
+// Captures the stdout of a command for a log.
 #pragma once
 
 #include <functional>
@@ -7,8 +7,8 @@
 
 namespace axg {
 
-/// Runs `print` and returns what it wrote to stdout. Where no temporary file can be made it prints
-/// as ever, and the result is empty. Not for two threads at a time.
+/// Runs `print` and returns what it wrote to stdout. If no temporary file can be created, `print`
+/// writes to stdout as usual, and the result is empty. Not for two threads at a time.
 [[nodiscard]] std::string captured_stdout(const std::function<void()>& print);
 
 }  // namespace axg

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// axguard check: everything a machine file comes to, so that a plausible but wrong value can be
-// seen.
+// axguard check: prints all values in force of a machine file, so that a person can see a plausible
+// but wrong one.
 #include <fmt/format.h>
 
 #include <memory>
@@ -37,7 +37,7 @@ struct CheckOptions {
     JsonOutput json;
 };
 
-/// Alone on stdout, so that it may be written to a file and read back.
+/// Prints the effective YAML only, so that stdout can be a file that axguard reads back.
 int print_effective(const LoadedMachine& loaded) {
     fmt::print(
         "# The effective configuration of {}: every key, with its value in force.\n"
@@ -47,7 +47,7 @@ int print_effective(const LoadedMachine& loaded) {
     return kExitClean;
 }
 
-/// The machine with each axis moved a little, to be compared with the one on the floor.
+/// Writes a page of the machine with each axis moved a little, to compare with the real machine.
 int write_report(const CheckOptions& options, const LoadedMachine& loaded) {
     std::optional<CpuEngine> engine = make_engine(loaded);
     if (!engine) {

@@ -9,7 +9,7 @@ namespace axg {
 class CommandLine;
 struct ReplayReport;
 
-/// What a command that starts a replay wants of its result; may be empty.
+/// Called with the result of a replay; may be empty.
 using ReplayObserver = std::function<void(const ReplayReport&)>;
 
 void add_simulate(CommandLine& line);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// axguard compile: a machine file, its meshes and all that is slow to find about them, in one file.
+// axguard compile: a machine file, its meshes and all that is slow to compute of them, in one file.
 // docs/reference/compiled.md.
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // axguard demo: the main job on an example machine. It runs the commands that a person would type,
-// shows the result on one screen and keeps all that they print in a log.
+// shows the result on one screen and writes all that they print to a log.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -34,15 +34,15 @@ struct DemoOptions {
     bool has_details = false;
 };
 
-/// What the screen shows of a replay.
+/// The results of a replay for the screen.
 struct DemoReplay {
     std::string proven, cycle, stop, why;  // lines; stop and why: of the first stop
     double stop_s = 0;
     std::string reason;
 };
 
-/// A replay is not in real time: where other programs delayed a cycle, its longest says nothing of
-/// the guard, and only the log has it.
+/// A replay is not in real time: if other programs delayed a cycle, the longest time is no property
+/// of the guard, and only the log contains it.
 std::string demo_cycle_text(const ReplayReport& report) {
     const ReplayRun& run = report.run;
     const TimeHistogram& times = run.cycles();
@@ -77,12 +77,12 @@ DemoReplay demo_replay(const ReplayReport& report) {
     return out;
 }
 
-/// Commands, one after the other, with what they print in a log.
+/// Runs commands, one after the other, and writes their output to a log.
 class DemoRun {
   public:
     explicit DemoRun(bool has_details) : has_details_(has_details) {}
 
-    /// False: it did not end with the exit code this demo is about; the reason is printed.
+    /// False: it did not end with the exit code that the demo expects; the reason is printed.
     bool type(std::vector<std::string> words, int wanted, DemoReplay* seen = nullptr) {
         if (seen != nullptr) {
             words.emplace_back("--details");
@@ -160,7 +160,7 @@ bool run_programs(const DemoFiles& files, DemoRun& run) {
     return true;
 }
 
-/// Where everything is, and commands to go on with.
+/// Prints the files written, and the next commands.
 void print_next(const DemoFiles& files) {
     fmt::print("\npage  {}: the machine in motion up to the stop; open it in a browser\n",
                files.page);

@@ -33,7 +33,7 @@
 namespace axg {
 namespace {
 
-// Above the guard's threads (80, 70): a real board takes no time from them either.
+// Above the guard's threads (80, 70): like a real board, this one never waits for them.
 constexpr int kBoardPriority = 85;
 constexpr auto kLookEvery = std::chrono::milliseconds(20);
 
@@ -53,7 +53,7 @@ void catch_signals() {
     sigaction(SIGTERM, &action, nullptr);
 }
 
-/// Once the drive is over a signal ends the program again, and removes what is half written.
+/// After the drive a signal ends the program again, and removes partly written files.
 void release_signals() {
     std::signal(SIGINT, SIG_DFL);
     std::signal(SIGTERM, SIG_DFL);
@@ -166,7 +166,7 @@ int exit_code_of_bus(const DriveArguments& arguments, const Machine& machine,
     return result.wire.is_lost && !has_contact && code == kExitCollision ? kExitCan : code;
 }
 
-/// False: something was not written, which was said.
+/// False: a file was not written; the reason is printed.
 bool write_outputs(const DriveArguments& arguments, const LoadedMachine& loaded,
                    const DriveReport& report, const std::deque<BoardSample>& samples) {
     bool is_written = arguments.csv.empty() ||
@@ -176,7 +176,7 @@ bool write_outputs(const DriveArguments& arguments, const LoadedMachine& loaded,
     return write_json(arguments.json, describe_drive(report)) && is_written;
 }
 
-/// What a board on a bus cannot play, by its exit code.
+/// The exit code, after a message, for what the simulated board on a bus does not support.
 int refuse(const DriveArguments& arguments, const Machine& machine) {
     if (machine.can.guard_sends_sync) {
         fmt::print(stderr,

@@ -39,7 +39,7 @@
 namespace axg {
 namespace {
 
-/// One line a sample: the true axes, what the board does, and what the guard says.
+/// One line a sample: true axes, the board's action, and the guard's permit and reason.
 class DriveCsv {
   public:
     explicit DriveCsv(const Machine& machine) : machine_(machine), text_(csv_head(machine)) {
@@ -67,7 +67,7 @@ class DriveCsv {
     bool has_clearance_levels_;
 };
 
-/// What the command line says about the run. An exit code where it says nothing that can be done.
+/// Options of the run from the command line. An exit code, after a message, if they are invalid.
 int make_options(const DriveArguments& arguments, const LoadedMachine& loaded,
                  DriveOptions& options, GcodeOptions& gcode) {
     const Machine& machine = loaded.machine;
@@ -103,8 +103,8 @@ int make_options(const DriveArguments& arguments, const LoadedMachine& loaded,
     return kExitClean;
 }
 
-/// Drives, with a line on the terminal and one in the table for each sample where they are wanted.
-/// @param whole_s  how long the motion takes where nothing stops it; 0: not known
+/// Drives, with a line on the terminal and one in the table for each sample, if requested.
+/// @param whole_s  duration of the motion without a stop; 0: no estimate
 DriveResult run_observed(const DriveArguments& arguments, const Machine& machine, GuardChain& chain,
                          const AxisPositions& start, CommandedMotion motion, double whole_s,
                          const DriveOptions& options, DriveCsv& csv, PageRecorder* page,
@@ -231,7 +231,7 @@ std::string csv_axes(const Machine& machine, std::span<const double> positions) 
 
 namespace {
 
-/// Text, CSV, page and JSON. Returns the exit code, which says first what could not be written.
+/// Text, CSV, page and JSON. Returns kExitInternal if a file was not written, else the run's code.
 int write_results(const DriveArguments& arguments, const LoadedMachine& loaded,
                   const DriveReport& report, const DriveCsv& csv, PageRecorder* page,
                   bool gpu_failed) {
@@ -318,13 +318,13 @@ int run_drive(const DriveArguments& arguments) {
     return write_results(arguments, loaded, report, csv, page.get(), report_if_gave_up(chosen));
 }
 
-/// An option of the guard in this process, and what to do instead where there is none.
+/// An option that needs the guard in this process, and its replacement with --bus.
 struct GuardOption {
     Option option;
     const char* instead;
 };
 
-/// True: one of them is given with --bus, and that was written.
+/// True: one of them was passed with --bus, and a message was printed.
 bool refuses(const std::vector<GuardOption>& options, const std::string& bus) {
     for (const GuardOption& one : options) {
         if (one.option.is_given()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What both kinds of `axguard drive` share: with the guard in the process, and with --bus.
+// Functions of both kinds of `axguard drive`: with the guard in the process, and with --bus.
 #pragma once
 
 #include <cstdint>
@@ -38,12 +38,12 @@ void look_for_ways_out(const DriveArguments& arguments, const LoadedMachine& loa
                        const ContainmentTest& containment_test, const DriveOptions& options,
                        DriveReport& report);
 
-/// Where the machine file promises it, the board keeps the caps of the permits with a motion that
-/// reads `share` at every tick. It must outlive the drive.
+/// If the machine file promises a cap, makes the board follow the caps of the permits: it sets
+/// `share` or `shares` at every tick, and the motion reads them. Both must outlive the drive.
 void keep_caps(const Machine& machine, double smooth_s, double* share, AxisShares* shares,
                BoardOptions& board);
 
-/// False: `--report` could not be written, and the reason was.
+/// False: `--report` could not be written; the reason is printed.
 [[nodiscard]] bool write_page(const DriveArguments& arguments, const LoadedMachine& loaded,
                               const DriveReport& report, const PageSamples& samples);
 

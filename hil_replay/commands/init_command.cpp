@@ -122,7 +122,7 @@ bool list_meshes(const std::string& folder, std::vector<std::string>& out) {
     return true;
 }
 
-/// A mesh does not say what its numbers mean; the person who knows the machine sees it at a glance.
+/// An STL file has no unit: prints the sizes, from which a person recognises the unit.
 void show_units(const std::string& folder, const std::vector<std::string>& files) {
     fmt::print(stderr,
                "--unit: missing required option: an STL file has no unit. Sizes in mm would be\n");
@@ -141,7 +141,7 @@ void show_units(const std::string& folder, const std::vector<std::string>& files
     }
 }
 
-/// From the machine file's folder to the meshes; empty when they do not lie below it.
+/// Relative path from the machine file's folder to the meshes; empty if they are not below it.
 std::string way_down(const fs::path& from, const fs::path& to) {
     std::error_code error;
     const fs::path base = fs::weakly_canonical(from.empty() ? fs::path(".") : from, error);
@@ -150,7 +150,7 @@ std::string way_down(const fs::path& from, const fs::path& to) {
     return is_below ? way.generic_string() : "";
 }
 
-/// What was written must load: the loader judges it, not the writer.
+/// Checks that the text loads, with the loader itself.
 bool is_sound(const std::string& text, const InitOptions& options) {
     Machine machine;
     const std::vector<ConfigFault> faults = parse_machine(text, options.out, machine);

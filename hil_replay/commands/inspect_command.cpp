@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// axguard inspect: what a recorded bus carries, before anyone asks what a guard makes of it.
+// axguard inspect: prints the contents of a recorded bus; needs no guard.
 #include <fmt/format.h>
 #include <unistd.h>
 

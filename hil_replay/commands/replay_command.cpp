@@ -63,7 +63,7 @@ int exit_code_of_unopened(const std::string& path) {
     return access(path.c_str(), R_OK) == 0 ? kExitCan : kExitInput;
 }
 
-/// What is made of each cycle besides the verdict.
+/// Outputs of each cycle in addition to the verdict.
 struct Outputs {
     std::unique_ptr<ReplayCsv> csv;
     std::optional<PairClearances> clearances;  // for the table
@@ -107,7 +107,7 @@ void note_cycle(Outputs& outputs, const ReplayCycle& cycle) {
     }
 }
 
-/// All that was asked for besides the words. False: something was not written.
+/// Writes the requested files. False: one was not written.
 bool write_outputs(const ReplayArguments& arguments, const ReplayReport& report, Outputs& outputs) {
     const ReplayDocument document = describe_replay(report);
     bool written = write_json(arguments.json, document.text);
@@ -147,13 +147,13 @@ TraceEnd feed(TraceReader& trace, ReplayRun& run) {
     run.finish();
     TraceEnd end = end_of(trace);
     if (!goes_on) {
-        end.fault.clear();  // nothing behind the stop was wanted
+        end.fault.clear();  // a fault after the stop does not count
     }
     return end;
 }
 
-/// What a stop of the guard means for a trace: silence in it withdraws the permit as a pair does,
-/// other faults of the input are the trace's, lost frames and another board's hashes too.
+/// The exit code of a stop: silence in the trace withdraws the permit as a pair does; other faults
+/// of the input, lost frames and another board's hashes are faults of the trace.
 ExitCode exit_code_of(const StopEvent& stop) {
     switch (stop.cause) {
         case GuardFault::verdict:
@@ -175,7 +175,7 @@ int exit_code_of(const ReplayRun& run, bool is_realtime) {
     }
     const ExitCode late = is_realtime && run.overruns() != 0 ? kExitDeadline : kExitClean;
     for (const StopEvent& stop : run.stops()) {
-        if (exit_code_of(stop) == kExitCan) {  // what is wrong with the trace goes before the rest
+        if (exit_code_of(stop) == kExitCan) {  // a fault of the trace precedes the other codes
             return kExitCan;
         }
     }
@@ -194,7 +194,7 @@ int exit_code_of(const ReplayReport& report, const Outputs& outputs) {
     }
     const int found = exit_code_of(report.run, report.is_realtime);
     const bool is_rejected = outputs.program && outputs.program->is_rejected();
-    return found == kExitClean && is_rejected ? kExitInput : found;  // a stop says more
+    return found == kExitClean && is_rejected ? kExitInput : found;  // a stop comes first
 }
 
 /// A black box has its own mode, and is judged to its end.

@@ -21,7 +21,7 @@ bool is_in_path(const fs::path& program) {
     for (std::string folder; std::getline(folders, folder, ':');) {
         const fs::path found = fs::path(folder) / program.filename();
         if (fs::exists(found, code)) {
-            return fs::equivalent(found, program, code);  // the shell takes the first
+            return fs::equivalent(found, program, code);  // the shell starts the first
         }
     }
     return false;
@@ -52,7 +52,7 @@ std::string shell_command(const std::vector<std::string>& words, std::size_t ind
     std::size_t used = indent;
     for (std::size_t i = 0; i < words.size(); ++i) {
         std::string shown = shell_word(words[i]);
-        if (shown.front() == '-' && i + 1 < words.size()) {  // an option keeps its value
+        if (shown.front() == '-' && i + 1 < words.size()) {  // an option and its value: one line
             shown += " " + shell_word(words[++i]);
         }
         const bool is_first = text.empty();

@@ -146,7 +146,7 @@ int run_simulate(const SimulateArguments& arguments) {
         simulate_with_progress(machine, split ? *split : reading.program, reading.line_count,
                                simulation, arguments.output);
     if (!summary.error.empty()) {
-        // What could not be written says its own name.
+        // A message about a file that was not written contains its name already.
         const bool is_about_program = summary.exit_code == kExitInput;
         std::fprintf(stderr, "%s%s%s\n", is_about_program ? arguments.gcode.program.c_str() : "",
                      is_about_program ? ":" : "", summary.error.c_str());

@@ -7,7 +7,7 @@
 
 namespace axg {
 
-/// Becomes the axguard-lab beside this program, with the same words; one line on stderr says so.
+/// Replaces this process by axguard-lab, with the same words, after one line on stderr.
 /// @return  kExitInput, when it cannot be started
 [[nodiscard]] int start_lab(const std::vector<std::string>& words);
 

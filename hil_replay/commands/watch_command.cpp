@@ -25,7 +25,7 @@ struct WatchOptions {
     std::string listen = "127.0.0.1:8642";
 };
 
-/// What is wrong with the options; empty: nothing.
+/// The fault of the options; empty: none.
 std::string fault_of(const WatchOptions& options, const std::optional<ListenAddress>& address) {
     if (options.bus.empty() && options.socket.empty() && options.trace.empty()) {
         return "missing option. Pass --bus IF, --socket PATH or --trace FILE.";
@@ -40,7 +40,7 @@ std::string fault_of(const WatchOptions& options, const std::optional<ListenAddr
     return {};
 }
 
-/// Where the service has it, unless stated.
+/// The status socket: the stated one, else the service's.
 std::string status_path_of(const WatchOptions& options) {
     return options.socket.empty() && !options.bus.empty()
                ? fmt::format("/run/axguardd/{}/status", options.bus)

@@ -9,15 +9,15 @@ namespace axg {
 
 namespace {
 
-constexpr std::uint64_t kRestSamplesMore = 20;  // some are lost, and some come before the stop
+constexpr std::uint64_t kRestSamplesMore = 20;  // some are lost, and some precede the stop
 
-/// That the guard hears of axes at rest: as many as it takes to see that they stand.
+/// Number of samples at rest that the guard needs to detect standstill.
 std::uint64_t rest_samples(const Machine& machine) {
     const std::uint64_t window = standstill_rules(machine).window_samples;
     return (window == kNeverStands ? 0 : window) + kRestSamplesMore;
 }
 
-/// Samples until the axes rest, or until a board that waits has nothing to wait for.
+/// Runs samples until the axes rest, or until a waiting board can no longer start.
 void play(LiveLoop& loop, MotionBoard& board, DriveTally& tally, const std::atomic<bool>& is_ended,
           const BusDriveObservers& observers) {
     while (!board.is_at_rest()) {

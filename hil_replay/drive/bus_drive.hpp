@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A motion on the simulated board in real time, on a wire whose guard is another program, until the
-// axes rest.
+// Runs a motion on the simulated board in real time until the axes rest; the guard on the wire is
+// another program.
 #pragma once
 
 #include <atomic>
@@ -21,7 +21,7 @@ struct BusDriveOptions {
 };
 
 struct BusDriveResult {
-    DriveResult drive;  // of the guard's stop only the tool is known; frames_lost: refused
+    DriveResult drive;  // of guard_stop only the tool is set; frames_lost: refused
     LiveWireReport wire;
 };
 
@@ -31,8 +31,8 @@ struct BusDriveObservers {
     std::int64_t watch_us = 500;
 };
 
-/// Waits for the first permit as long as nobody ends it. Sends nothing where another board is on
-/// the wire. When the axes rest, some samples more tell the guard so.
+/// Waits for the first permit until a person ends the run. Sends no frame if another board is on
+/// the wire. Sends more samples after the axes rest, so that the guard detects the standstill.
 /// @param is_ended  set by a person: a board that moves brakes first
 [[nodiscard]] BusDriveResult drive_on_bus(const Machine& machine, CanTransport& wire,
                                           const LiveClock& clock, std::span<const double> start,
@@ -40,8 +40,8 @@ struct BusDriveObservers {
                                           const std::atomic<bool>& is_ended,
                                           const BusDriveObservers& observers = {});
 
-/// What a board is drawn from that keeps what the machine file promises of it. Its samples have no
-/// jitter of their own: this computer adds enough.
+/// Options for drawing a board that fulfils the promises of the machine file. Its samples have no
+/// simulated jitter: this computer adds enough.
 [[nodiscard]] BoardOptions promised_live_board(const Machine& machine, std::uint64_t seed);
 
 }  // namespace axg

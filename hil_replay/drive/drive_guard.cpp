@@ -43,7 +43,7 @@ LoopGuard DriveGuard::node() {
                                std::vector<CanFrame>& sent) { hear({.frame = frame}, sent); },
             .on_time =
                 [this](std::int64_t now_us, std::vector<CanFrame>& sent) {
-                    if (sends_sync_) {  // nobody else begins
+                    if (sends_sync_) {  // no frame of the board precedes its own
                         take_wire(sent);
                     }
                     sent_ = &sent;

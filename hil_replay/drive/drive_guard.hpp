@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The deployed guard as a node of the simulated wire: frames in, its frames out, each cycle's
-// result a stated time after its sample. It arms when it is ready.
+// The deployed guard as a node of the simulated wire: it receives and sends frames, and each
+// cycle's result follows its sample after a stated time. It arms when it is ready.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace axg {
 
-/// Why the guard withdrew the permit, or why it never gave one.
+/// Why the guard withdrew the permit, or never issued one.
 struct DriveStop {
     GuardFault cause = GuardFault::none;   // none: it has not stopped
     StopReason reason = StopReason::none;  // cause none, verdict or input
@@ -28,7 +28,7 @@ struct DriveStop {
 [[nodiscard]] constexpr bool has_reason(const DriveStop& stop) noexcept {
     return stop.reason != StopReason::none || stop.cause != GuardFault::none;
 }
-/// Of a verdict, the input or a withheld permit why, of any other stop what led to it.
+/// The reason of a verdict, an input fault or a withheld permit; the cause of any other stop.
 [[nodiscard]] inline const char* reason_text(const DriveStop& stop) noexcept {
     return stop.reason != StopReason::none ? to_text(stop.reason) : to_text(stop.cause);
 }
@@ -36,16 +36,16 @@ struct DriveStop {
 class DriveGuard {
   public:
     /// `machine` and `chain` must outlive it.
-    /// @param response_us  from the last frame of a sample to its permit: what a cycle may take
-    /// @param killed_us  from then on it does nothing
+    /// @param response_us  time of a cycle, from the last frame of a sample to its permit
+    /// @param killed_us  from this time on the guard neither reads nor sends
     DriveGuard(const Machine& machine, GuardChain& chain, const ConfigurationHashes& hashes,
                std::int64_t response_us, std::int64_t now_us, std::int64_t killed_us);
-    DriveGuard(const DriveGuard&) = delete;  // its node holds its address
+    DriveGuard(const DriveGuard&) = delete;  // its node contains its address
     DriveGuard& operator=(const DriveGuard&) = delete;
 
     [[nodiscard]] LoopGuard node();
     [[nodiscard]] const DriveStop& stop() const noexcept { return stop_; }
-    /// Why the newest sample has no permit, though nothing is stopped.
+    /// Why the newest sample has no permit, although the guard has not stopped.
     [[nodiscard]] DriveStop withheld() const noexcept {
         return {.reason = result_.reason,
                 .pair = result_.pair,
@@ -54,7 +54,7 @@ class DriveGuard {
                 .unproven = chain_.unproven(result_.pair)};
     }
     [[nodiscard]] const CycleResult& result() const noexcept { return result_; }
-    /// Of the newest result: a permit was sent.
+    /// Whether a permit was sent for the newest result.
     [[nodiscard]] bool has_permit() const noexcept { return has_permit_; }
 
   private:
@@ -66,7 +66,7 @@ class DriveGuard {
     bool sends_sync_;
     std::int64_t killed_us_;
     std::vector<CanFrame>* sent_ = nullptr;
-    std::vector<CanFrame> first_;  // of the start, before it has a wire
+    std::vector<CanFrame> first_;  // frames of the start, before it has a wire
     DriveStop stop_;
     CycleResult result_;
     bool has_permit_ = false;

@@ -64,7 +64,7 @@ void print_guard_stop(const DriveReport& report, Detail detail, std::FILE* words
     }
 }
 
-/// What the wire did, and what the guard sent about its stop.
+/// Prints faults of the wire and the guard's emergency message.
 void print_bus(const DriveReport& report, std::FILE* words) {
     const LiveWireReport& wire = report.bus->wire;
     if (wire.emergency) {
@@ -82,7 +82,7 @@ void print_bus(const DriveReport& report, std::FILE* words) {
                static_cast<double>(wire.late_us_max) * 1e-3);
 }
 
-/// What each slow-down cost, the dearest first; in brief all of them together.
+/// Prints the cost of each slow-down, the highest first; in brief only the total.
 void print_caps(const DriveReport& report, Detail detail, std::FILE* words) {
     const std::size_t shown = detail == Detail::full ? 10 : 0;
     const DriveResult& result = report.result;
@@ -124,8 +124,8 @@ void print_time(const DriveReport& report, Detail detail, std::FILE* words) {
     }
 }
 
-/// Where the axes rest, and how far each pair is from contact; in brief those in contact, or the
-/// nearest one.
+/// Prints where the axes rest and how far each pair is from contact; in brief only the pairs in
+/// contact, or the nearest one.
 void print_rest(const DriveReport& report, Detail detail, std::FILE* words) {
     const Machine& machine = report.machine;
     fmt::print(words, "at rest:");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a drive came to, in words and as JSON: why it stopped, where each axis came to rest, and how
-// far before contact.
+// Report of a drive as text and JSON: why it stopped, where each axis rests, and how far from
+// contact.
 #pragma once
 
 #include <cstdio>
@@ -19,7 +19,7 @@
 
 namespace axg {
 
-/// Of a drive on a bus.
+/// Part of the report for a drive on a bus.
 struct BusReport {
     std::string interface;
     LiveWireReport wire;
@@ -32,22 +32,22 @@ struct DriveReport {
     const std::string& program;
     const std::string& mode;
     std::uint64_t seed;
-    bool has_cap = false;  // the guard gave a speed cap
+    bool has_cap = false;  // the guard sent a speed cap
     double free_s = 0;     // time of the program without obeying it; 0: no comparison
     std::optional<PathContact> contact{};  // on the true path
-    Escapes escapes{};                     // from where the axes rest after a stop
-    std::optional<JogOut> jogs{};          // that followed
-    std::optional<BusReport> bus{};        // the guard was another program; `mode` is not known
-    std::optional<StopWhy> why{};          // of the guard's stop, or of the permit that never came
+    Escapes escapes{};                     // from the rest position after a stop
+    std::optional<JogOut> jogs{};          // after the stop
+    std::optional<BusReport> bus{};        // the guard was another program; `mode` is unused
+    std::optional<StopWhy> why{};          // of the guard's stop, or of the missing first permit
     ProgramLines lines{};                  // by the board's clock
 };
-/// When the program was left: at the sample that the guard stopped for, or when the board was
-/// asked.
+/// Time at which the program was interrupted: the sample that the guard stopped for, else
+/// BoardStopRecord::asked_us.
 [[nodiscard]] std::int64_t stopped_at_us(const DriveResult& result) noexcept;
 
 void print_drive(const DriveReport& report, Detail detail, std::FILE* words);
 [[nodiscard]] std::string describe_drive(const DriveReport& report);
-/// Stops of the guard as a page has them (RunPage::stops).
+/// Stops of the guard in the format of a page (RunPage::stops).
 [[nodiscard]] std::string describe_stops(const DriveReport& report);
 
 struct PairAtRest {
@@ -55,7 +55,7 @@ struct PairAtRest {
     double clearance_mm = 0;  // certified lower bound
     bool is_touching = false;
 };
-/// Every pair within 50 mm where the axes came to rest, nearest first.
+/// Returns every pair within 50 mm at the rest position, nearest first.
 [[nodiscard]] std::vector<PairAtRest> pairs_at_rest(const DriveReport& report);
 [[nodiscard]] double in_file_units(const Axis& axis, double value);
 [[nodiscard]] double motion_s(const DriveResult& result);

@@ -38,8 +38,8 @@ AxisSnapshot snapshot_at_rest(const Machine& machine, const DriveResult& result)
 
 namespace {
 
-/// A cap of 0 is obeyed as the least feed there is: an axis that stands would wait for ever, and
-/// while that feed is not certified either, the permit ends it.
+/// Treats a cap of 0 as the lowest feed, because axes at rest would wait forever. If that feed is
+/// not certified either, the end of the permit stops them.
 double share_of(const PermitWatch& permits, bool obeys_cap) noexcept {
     const double capped = std::max<double>(permits.speed_cap(), 1) / kSpeedCapRapid;
     return std::min(obeys_cap ? capped : 1, permits.is_slow() ? kSlowShare : 1);
@@ -76,7 +76,7 @@ void DriveTally::note_cap(const MotionBoard& board) noexcept {
         lost_before_s_ = *lost_s_;
     }
     is_slowed_ = cap < kCapRapid;
-    if (!slow_downs_.empty()) {  // what one has cost is known when the axes are fast again
+    if (!slow_downs_.empty()) {  // its cost is final when the axes are fast again
         SlowDown& last = slow_downs_.back();
         last.least = is_slowed_ ? std::min(last.least, cap) : last.least;
         last.seconds = is_slowed_ ? now_s - last.begin_s : last.seconds;
@@ -120,7 +120,7 @@ DriveResult drive(const Machine& machine, GuardChain& chain, std::span<const dou
     bus.faults = options.faults;
     bus.seed = options.board.seed + 1;
     ClosedLoop loop(board, bus, guard.node());
-    // A board with a look-ahead path has a buffer of them to fill first.
+    // A board with a look-ahead path fills its buffer first.
     const std::int64_t buffer_us =
         std::int64_t{machine.can.look_ahead_samples} * machine.can.sample_us;
     const std::int64_t wait_ends_us = kBoardStartUs + options.wait_us_max + buffer_us;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A motion on the simulated board with the guard on the other end of the wire, until the axes rest.
+// Runs a motion on the simulated board, with the guard on the same wire, until the axes rest.
 #pragma once
 
 #include <functional>
@@ -12,13 +12,13 @@
 
 namespace axg {
 
-// What a board of ours makes of the word slow: no axis faster than this share of its largest speed.
+// Under the word slow a simulated board limits each axis to this share of its largest speed.
 inline constexpr double kSlowShare = 0.25;
 
 /// A stretch of time in which the permits ordered less than rapid.
 struct SlowDown {
     double begin_s = 0, seconds = 0;  // since the axes began to move
-    double lost_s = 0;                // what it cost, where the motion says so
+    double lost_s = 0;                // its cost, if the motion reports it
     std::uint8_t least = kCapRapid;   // 1/250 of rapid
 };
 
@@ -28,12 +28,12 @@ struct DriveOptions {
     std::int64_t response_us = 500;        // of a cycle of the guard
     std::int64_t wait_us_max = 500'000;    // for the first permit
     std::int64_t time_us_max = INT64_MAX;  // of motion
-    // A board that obeys the speed cap, or the word slow: where the motion reads which share of
-    // their largest speeds its axes may use. Written once a sample, after the guard's frames have
-    // come.
+    // For a board that obeys the speed cap or the word slow: bound of its axes as a share of their
+    // largest speeds, which the motion reads. Written once a sample, after the guard's frames have
+    // arrived.
     double* speed_share = nullptr;
-    bool obeys_cap = true;  // false: the word slow alone
-    // Of a board that keeps caps (BoardOptions::cap): what they have cost so far, by the motion.
+    bool obeys_cap = true;  // false: only the word slow
+    // For a board with enforced caps (BoardOptions::cap): their cost so far, from the motion.
     const double* lost_s = nullptr;
 };
 
@@ -46,18 +46,18 @@ struct DriveResult {
     std::uint64_t samples = 0, permits = 0, frames_lost = 0;
     std::int64_t moving_since_us = INT64_MIN;
     std::int64_t ended_us = 0;       // to one sample
-    std::uint8_t speed_cap = 250;    // 1/250 of rapid: the least in motion since one was known
-    std::uint64_t slow_samples = 0;  // in motion under a permit that says slow
+    std::uint8_t speed_cap = 250;    // 1/250 of rapid: the least in motion since the first
+    std::uint64_t slow_samples = 0;  // in motion, with the word slow
     std::uint8_t samples_least = 0;  // n of the shortest permit in motion; 0: there was none
-    // Of a board that keeps caps.
+    // For a board with enforced caps.
     std::vector<SlowDown> slow_downs{};
     double lost_s = 0;
-    std::uint64_t cap_breaches = 0;  // ticks and stops in which it did not
-    bool is_held = false;            // it waits on its path, for so long that a person has to know
+    std::uint64_t cap_breaches = 0;  // MotionBoard::cap_breaches
+    bool is_held = false;            // it waits on its path for so long that a person has to act
 };
 
-/// What both kinds of drive do after each sample: the board obeys what a permit advises, and the
-/// result counts it.
+/// Work of both kinds of drive after each sample: passes the permit's advice to the motion, and
+/// counts it for the result.
 class DriveTally {
   public:
     /// @param speed_share, obeys_cap, lost_s  as in DriveOptions
@@ -67,10 +67,10 @@ class DriveTally {
     }
 
     void note(const MotionBoard& board) noexcept;
-    /// All that the board knows; of the guard and of the wire nothing.
+    /// Returns the board's part of the result; the fields of guard and wire have their defaults.
     [[nodiscard]] DriveResult result(const Machine& machine, const MotionBoard& board) const;
 
-    static constexpr std::size_t kSlowDownsMax = 10'000;  // more are one with the last
+    static constexpr std::size_t kSlowDownsMax = 10'000;  // further ones are added to the last
 
   private:
     void note_cap(const MotionBoard& board) noexcept;
@@ -78,7 +78,7 @@ class DriveTally {
     double* speed_share_;
     const double* lost_s_;
     std::vector<SlowDown> slow_downs_;
-    double lost_before_s_ = 0;  // up to the slow-down that is on
+    double lost_before_s_ = 0;  // before the last slow-down
     bool is_slowed_ = false;
     std::uint8_t samples_least_ = 0;
     bool obeys_cap_, is_cap_known_ = false;
@@ -89,7 +89,7 @@ class DriveTally {
 /// The true axes where they rest, with the tool of the stop.
 [[nodiscard]] AxisSnapshot snapshot_at_rest(const Machine& machine, const DriveResult& result);
 
-/// What a board is drawn from that keeps what the machine file promises of it, and no more.
+/// Options for drawing a board that fulfils the promises of the machine file, and no more.
 [[nodiscard]] BoardOptions promised_board(const Machine& machine, std::uint64_t seed);
 
 /// @param each  called after every sample; false ends the run. May be empty
@@ -101,7 +101,7 @@ struct DriveObservers {
 };
 
 /// `machine` and `chain` must outlive the call. Ends when the axes rest at the end of the motion or
-/// after a stop, when no permit comes, or when the time is over.
+/// after a stop, when no permit arrives, when a hold lasts too long, or when the time is over.
 [[nodiscard]] DriveResult drive(const Machine& machine, GuardChain& chain,
                                 std::span<const double> start, CommandedMotion motion,
                                 const DriveOptions& options, const DriveObservers& observers = {});

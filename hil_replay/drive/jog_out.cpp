@@ -22,7 +22,7 @@ bool is_rotary(const Machine& machine, const JogMove& move) {
     return machine.axes[move.axis].kind == AxisKind::rotary;
 }
 
-/// Every pair is farther apart than its margin.
+/// Whether every pair is farther apart than its margin.
 bool has_margins(const Machine& machine, const Engine& engine, const AxisSnapshot& snapshot) {
     const auto pair_queries = std::make_unique<PairQueries>();
     make_contact_queries(machine, snapshot, *pair_queries);
@@ -37,8 +37,8 @@ bool has_margins(const Machine& machine, const Engine& engine, const AxisSnapsho
                        });
 }
 
-/// At rest there any motion would be permitted; where that takes a look-ahead path as well, every
-/// pair has its margin.
+/// Whether any motion from rest there would be permitted. With path_keeping, which also needs a
+/// look-ahead path: whether every pair has its margin.
 bool is_free(const LoadedMachine& loaded, const Engine& engine,
              const ContainmentTest& containment_test, AxisSnapshot snapshot) {
     if (loaded.machine.guard.promise == StopPromise::path_keeping) {
@@ -101,7 +101,7 @@ JogOut jog_out(const LoadedMachine& loaded, const Engine& engine,
         const JogMove move{ways.jogs[0].axis, ways.jogs[0].is_negative};
         const auto result = jog_once(loaded, engine, containment_test, out.rest, options, move);
         if (!result || result->state == BoardState::waiting) {
-            break;  // no permit: nothing moved
+            break;  // no permit: no axis moved
         }
         const double before = out.rest.position[move.axis];
         for (std::size_t i = 0; i < machine.axes.size(); ++i) {

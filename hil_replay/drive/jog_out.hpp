@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Out of a place near an obstacle, jog by jog, each along the best way out and with the guard on
-// the other end of the wire, until any other motion is permitted. mm, rad.
+// Moves the axes away from an obstacle jog by jog, each along the best way out and with the guard
+// on the wire, until any other motion is permitted. mm, rad.
 #pragma once
 
 #include <string>
@@ -21,18 +21,18 @@ inline constexpr std::uint32_t kJogsMax = 20;  // then it gives up
 struct JogDone {
     JogMove move;
     double moved = 0;         // mm or rad
-    double clearance_mm = 0;  // of every pair afterwards, at least; up to kEscapeWithinMm
+    double clearance_mm = 0;  // lower bound for every pair afterwards, up to kEscapeWithinMm
     bool is_stopped = false;  // by the guard, before its end
 };
 
 struct JogOut {
     std::vector<JogDone> jogs;
-    bool is_out = false;  // any motion is permitted from there (path_keeping: from its margins)
+    bool is_out = false;  // any motion is permitted from there (path_keeping: all margins hold)
     AxisSnapshot rest;    // where it ends
 };
 
 /// Guard and board begin anew for each jog, as after a restart.
-/// @param options  of the drive that was stopped; its faults are gone
+/// @param options  of the stopped drive; its faults are not repeated
 [[nodiscard]] JogOut jog_out(const LoadedMachine& loaded, const Engine& engine,
                              const ContainmentTest& containment_test, const AxisSnapshot& from,
                              const DriveOptions& options);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The true path of a drive, judged beside the guard: does a pair touch anywhere on it, and not only
-// where the axes rest? Every instant that it is shown, by the certified test at no margin.
+// Judges the true path of a drive independently of the guard: whether a pair touches anywhere on
+// it, not only at rest. Applies the certified test with distance 0 to every instant it receives.
 #pragma once
 
 #include <cstdint>
@@ -30,14 +30,14 @@ struct PathContact {
 
 class PathJudge {
   public:
-    /// `machine`, and what `engine` and `containment_test` stand on, must outlive it.
+    /// `machine`, `containment_test` and the data behind it and `engine` must outlive it.
     PathJudge(const Machine& machine, const Engine& engine, const ContainmentTest& containment_test)
         : machine_(machine), engine_(engine), containment_test_(containment_test) {}
 
-    /// The true axes, mm and rad, in order of time; `tool` is in the spindle.
+    /// Tests the true axes, mm and rad, with `tool` in the spindle. Call in order of time.
     void look(std::int64_t time_us, std::span<const AxisMotion> axes, std::uint16_t tool);
 
-    /// The first one; empty: none.
+    /// The first contact; empty: none.
     [[nodiscard]] const std::optional<PathContact>& contact() const noexcept { return contact_; }
     [[nodiscard]] std::uint64_t instants() const noexcept { return instants_; }
 

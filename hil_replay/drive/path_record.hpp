@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The true path of a drive, for a judge that comes afterwards: a bus leaves no time for judging.
-// Five axes take 56 bytes an instant.
+// Stores the true path of a drive for judging afterwards: a bus leaves no time for that. Five axes
+// need 56 bytes an instant.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +14,9 @@ namespace axg {
 
 class PathRecord {
   public:
-    /// In order of time, the same axes each time.
+    /// Call in order of time, with the same axes each time.
     void add(std::int64_t time_us, std::span<const AxisMotion> axes, std::uint16_t tool);
-    /// Every instant, in order, up to the first contact.
+    /// Passes every instant to `judge`, in order, up to the first contact.
     void show(PathJudge& judge) const;
 
   private:
@@ -24,7 +24,7 @@ class PathRecord {
         std::int64_t time_us = 0;
         std::uint16_t tool = 0;
     };
-    std::deque<Instant> instants_;  // deques: nothing is copied while they grow
+    std::deque<Instant> instants_;  // deques: growth copies no elements
     std::deque<double> positions_;  // [instants][axes]
 };
 

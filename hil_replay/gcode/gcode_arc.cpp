@@ -11,7 +11,7 @@ namespace axg {
 namespace {
 
 constexpr double kTwoPi = 2.0 * kPi;
-constexpr double kAngleTiny = 1e-12;  // rad: start and end on one ray mean a full turn
+constexpr double kAngleTiny = 1e-12;  // rad: a start and end on one ray are a full turn
 constexpr double kRadiusMmMin = 1e-6;
 constexpr double kRadiusMmMax = 1e6;
 
@@ -21,8 +21,8 @@ std::string print(const char* format, double a, double b) {
     return text;
 }
 
-/// R form: the centre lies on the chord's bisector, on the side that makes the arc the short or the
-/// long way.
+/// R form: computes the centre on the chord's bisector, on the side that gives the short arc, or
+/// for a negative R the long arc.
 bool center_from_radius(const ArcWords& words, double tolerance, ArcShape& shape) {
     const double chord_first = words.end_first - words.start_first;
     const double chord_second = words.end_second - words.start_second;
@@ -39,7 +39,7 @@ bool center_from_radius(const ArcWords& words, double tolerance, ArcShape& shape
         return false;
     }
     const double height = radius > half ? std::sqrt((radius - half) * (radius + half)) : 0.0;
-    // Counter-clockwise the short way has its centre on the left of the chord.
+    // The centre of a short counter-clockwise arc is to the left of the chord.
     const double side = (words.is_clockwise ? -1.0 : 1.0) * (words.radius < 0 ? -1.0 : 1.0);
     shape.center_first =
         (words.start_first + words.end_first) / 2 - side * height * chord_second / (2 * half);

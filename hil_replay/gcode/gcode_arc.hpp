@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the words of G2 and G3 to a circle: centre, radii and swept angle, with LinuxCNC's
+// Converts the words of G2 and G3 to a circle: centre, radii and swept angle, with LinuxCNC's
 // tolerances.
 #pragma once
 
@@ -12,7 +12,7 @@ struct ArcWords {
     double start_first = 0, start_second = 0;
     double end_first = 0, end_second = 0;
     bool has_radius = false;
-    double radius = 0;                           // R form: negative takes the longer way
+    double radius = 0;                           // R form: negative for the longer arc
     double center_first = 0, center_second = 0;  // IJK form, absolute
     bool is_clockwise = false;
     int turns = 1;

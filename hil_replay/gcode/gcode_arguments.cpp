@@ -51,7 +51,7 @@ bool read_work_offset(const std::string& text, const Machine& machine, GcodeOpti
     return fault.empty();
 }
 
-/// A fault where the motion certainly has more samples than it may have.
+/// Adds a fault if the motion certainly has more samples than allowed.
 void check_length(const Machine& machine, const GcodeOptions& options, GcodeResult& result) {
     const double seconds_max = static_cast<double>(options.samples_max) * options.sample_us * 1e-6;
     const std::vector<Move>& moves = result.program.moves;
@@ -103,7 +103,7 @@ bool is_start_inside(const Machine& machine, const AxisPositions& start) {
     Move move;
     move.target = start;
     AxisPositions nowhere;
-    nowhere.fill(NAN);  // equal to nothing: every axis is judged
+    nowhere.fill(NAN);  // equal to no position: check_travel checks every axis
     const std::vector<TravelExcess> outside = check_travel(machine, nowhere, move);
     for (const TravelExcess& excess : outside) {
         std::fprintf(stderr, "--start: %s: %s\n", machine.axes[excess.axis].name.c_str(),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a command line says about a G-code program: which file, and what the control would know
-// beside it. The same words for every command that reads one. docs/reference/gcode.md.
+// Options of a command line for a G-code program: the file, and settings that are otherwise in the
+// control. Every command that reads a program has the same options. docs/reference/gcode.md.
 #pragma once
 
 #include <cstddef>
@@ -23,23 +23,23 @@ struct GcodeArguments {
 };
 
 void add_gcode_options(const Command& command, GcodeArguments& arguments);
-/// Of these all that reading needs besides the program.
+/// Adds only the settings for reading, without the program and the limit of samples.
 std::vector<Option> add_gcode_settings(const Command& command, GcodeArguments& arguments);
 
-/// Everything of it that means something only with a machine at hand. False: used wrongly, and
-/// stderr has the form.
+/// Converts the arguments to options for this machine. False: an argument is invalid; the message
+/// on stderr shows the expected form.
 [[nodiscard]] bool make_gcode_options(const GcodeArguments& arguments, const Machine& machine,
                                       GcodeOptions& options);
 
-/// Whether every axis starts within its travel; else stderr names the axis.
+/// Whether every axis starts within its travel; else prints the axes outside on stderr.
 [[nodiscard]] bool is_start_inside(const Machine& machine, const AxisPositions& start);
 
-/// The program file's content; a fault stands on stderr. False: no such file, or too large.
+/// Reads the program file. False: no such file, or too large; prints the fault on stderr.
 [[nodiscard]] bool read_program_text(const std::string& path, std::string& text);
-/// What was wrong, left out or odd: a line each, on stderr.
+/// Prints ignored words, notes and faults on stderr, one per line.
 void print_messages(const std::string& file, const GcodeResult& result);
-/// Reads the program file; what was wrong, left out or odd stands on stderr, a line each. False: no
-/// such file. Faults of the program are in `result`.
+/// Reads and interprets the program file, and prints its messages on stderr. False: the file cannot
+/// be read. Faults of the program are in `result`.
 [[nodiscard]] bool read_program(const GcodeArguments& arguments, const Machine& machine,
                                 const GcodeOptions& options, GcodeResult& result);
 

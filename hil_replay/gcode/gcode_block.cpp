@@ -10,8 +10,7 @@ namespace {
 
 using enum ModalGroup;
 
-/// Ten times the number where the number has one decimal at most, else -1. LinuxCNC's tolerance is
-/// the same.
+/// Ten times the number if it has at most one decimal, else -1. LinuxCNC has the same tolerance.
 std::int32_t code_of(double number) {
     const double tenfold = number * 10.0;
     const double nearest = std::round(tenfold);
@@ -55,7 +54,7 @@ class BlockBuilder {
         }
     }
 
-    /// A letter that no word of the block takes is a typing error until proven otherwise.
+    /// Reports letters that no word of the block uses: they may be typing errors.
     void check_letters() {
         const std::int32_t motion_code = block_.code(motion);
         const bool may_be_arc = motion_code == -1 || motion_code == 20 || motion_code == 30;
@@ -102,7 +101,7 @@ class BlockBuilder {
         const GcodeWordRule* rule = code < 0 ? nullptr : find_gcode_word(word.letter, code);
         const std::string name = code < 0 ? word.text : name_of(word.letter, code);
         const bool is_refused = rule == nullptr || rule->support == WordSupport::refused;
-        const bool is_own = word.letter == 'M' && code >= 1000;  // of the control's configuration
+        const bool is_own = word.letter == 'M' && code >= 1000;  // configured in the control
         if ((is_refused || is_own) &&
             std::find(ignored_.begin(), ignored_.end(), name) != ignored_.end()) {
             block_.ignored.push_back(name);
@@ -121,7 +120,7 @@ class BlockBuilder {
         }
         std::int32_t& slot = block_.codes[static_cast<std::size_t>(rule->group)];
         const bool is_mist_and_flood =
-            rule->group == coolant && slot + code == 150;  // M7 and M8: the one allowed couple
+            rule->group == coolant && slot + code == 150;  // M7 and M8: the only allowed pair
         if (slot >= 0 && !is_mist_and_flood) {
             fault(name, "conflicts with " + name_of(word.letter, slot) +
                             " in the same block; write them in two blocks");
@@ -153,7 +152,7 @@ GcodeBlock make_gcode_block(const GcodeLine& line, std::uint32_t line_number,
     if (!line.fault.empty()) {
         faults.push_back({line_number, line.fault_word, line.fault});
     } else if (faults.size() == faults_before) {
-        builder.check_letters();  // a refused word may have taken them
+        builder.check_letters();  // only without faults: a refused word may use the letters
     }
     return builder.take();
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One block: the words of a line sorted by what they are, with every conflict inside the line
-// found.
+// One block: the words of a line by modal group and letter. Reports every conflict within the line.
 #pragma once
 
 #include <array>
@@ -22,7 +21,7 @@ struct GcodeBlock {
     std::array<std::int32_t, kModalGroups> codes{};
     bool is_machine = false;                          // G53
     std::array<std::optional<double>, 26> letters{};  // by letter - 'A'; G, M and N stay empty
-    std::vector<std::string> ignored;                 // words left out because the user named them
+    std::vector<std::string> ignored;                 // words skipped at the user's request
 
     [[nodiscard]] std::int32_t code(ModalGroup group) const {
         return codes[static_cast<std::size_t>(group)];
@@ -44,19 +43,19 @@ inline constexpr char kAxisLetters[] = {'X', 'Y', 'Z', 'A', 'B', 'C', 'U', 'V', 
 [[nodiscard]] constexpr bool is_canned_cycle(std::int32_t motion) {
     return motion == 730 || (motion >= 810 && motion <= 890);
 }
-/// M50 to M53 and M62 to M65 say with P what they are about.
+/// M50 to M53 and M62 to M65 use P: on or off, or the number of an output.
 [[nodiscard]] inline bool takes_p(const GcodeBlock& block) {
     return block.code(ModalGroup::overrides) >= 500 || block.code(ModalGroup::outputs) != -1;
 }
-/// Words whose axis words say something else than where to move: G10, G52, G92, G43.1.
+/// Words whose axis words are offsets and not targets of a move: G10, G52, G92, G43.1.
 [[nodiscard]] inline bool takes_axis_words(const GcodeBlock& block) {
     const std::int32_t code = block.code(ModalGroup::non_modal);
     return code == 100 || code == 520 || code == 920 || block.code(ModalGroup::tool_length) == 431;
 }
 
-/// @param ignored  words the user asked to leave out, as "M428"; of those that this reader can read
-/// only M100 and above, which mean what the control's configuration says, are left out
-/// @param faults   appended to; on any new one the block must not run
+/// @param ignored  words to skip, such as "M428". Applies to refused words and to M100 and above,
+/// which the configuration of the control defines, and not to other words
+/// @param faults   appended to; after any new one the block must not run
 [[nodiscard]] GcodeBlock make_gcode_block(const GcodeLine& line, std::uint32_t line_number,
                                           std::span<const std::string> ignored,
                                           std::vector<ProgramFault>& faults);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Canned cycles: G73, G81 to G86 and G89, with G98 and G99. The spindle is not simulated.
-// Source: LinuxCNC "G-codes"; held to its interpreter by tests/oracle/rs274_test.py.
+// Source: LinuxCNC "G-codes"; tests/oracle/rs274_test.py compares them with its interpreter.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -10,12 +10,12 @@
 namespace axg {
 namespace {
 
-constexpr double kPeckBackMm = 0.254;  // G73 draws back by it, G83 stops short by it
+constexpr double kPeckBackMm = 0.254;  // G73 retracts by it, G83 stops above the last depth by it
 constexpr double kPecksMax = 100'000;  // of one hole
 
 }  // namespace
 
-/// One block's holes. Machine coordinates, mm.
+/// The holes of one block. Machine coordinates, mm.
 struct GcodeInterpreter::Hole {
     std::string word;
     char up_letter = 'Z';
@@ -71,7 +71,7 @@ bool GcodeInterpreter::read_letters(Hole& hole, bool is_same) {
         (has_dwell && !take('P', cycle.dwell_s)) || (has_peck && !take('Q', cycle.peck))) {
         return false;
     }
-    if (state_.motion == 840) {  // while the spindle turns round; LinuxCNC keeps any cycle's P
+    if (state_.motion == 840) {  // while the spindle reverses; as in LinuxCNC, P of any cycle
         cycle.dwell_s = block.value('P', cycle.dwell_s);
     }
     if (!(cycle.dwell_s >= 0 && cycle.dwell_s <= 86400)) {
@@ -110,7 +110,7 @@ bool GcodeInterpreter::read_hole(Hole& hole) {
         hole.step[axis] = state_.is_incremental ? value : 0;
         hole.at[axis] = state_.is_incremental ? hole.at[axis] : value + offset_of(axis);
     }
-    // G91: R is above the height before the row of cycles, the bottom above R.
+    // G91: R counts from the height before the row of cycles, the bottom from R.
     const double start_mm = cycle.is_in_row ? cycle.first_height_mm : state_.position[hole.up];
     const double zero = state_.is_incremental ? start_mm : offset_of(hole.up);
     hole.r_mm = cycle.r * scale() + zero;
@@ -135,8 +135,8 @@ void GcodeInterpreter::drill(const Hole& read) {
         cycle.first_height_mm = state_.position[hole.up];
         cycle.is_in_row = true;
     }
-    // As LinuxCNC does it: below R it goes up where it stands, else it crosses at its own height,
-    // at R, or with G98 at the height before the row, whichever is higher.
+    // As in LinuxCNC: if the height before the row is below R, the axis first rises to R in place.
+    // Else it crosses at its own height or, if higher, at R (G99) or at the height before (G98).
     const double first_mm = cycle.first_height_mm;
     double height_mm =
         std::max(state_.position[hole.up], state_.retracts_to_r ? hole.r_mm : first_mm);

@@ -10,13 +10,13 @@
 namespace axg {
 namespace {
 
-/// Words that stand at the start of a Klartext block, after its number.
+/// Words at the start of a Klartext block, after its number.
 constexpr std::string_view kHeidenhain[] = {
     "BEGIN PGM", "END PGM",  "BLK FORM", "TOOL CALL", "TOOL DEF", "CYCL DEF",
     "CYCL CALL", "CALL LBL", "LBL ",     "PLANE ",    "FUNCTION", "APPR ",
     "DEP ",      "FN ",      "L ",       "LN ",       "CC ",
 };
-/// Words that may stand anywhere in a block.
+/// Words anywhere in a block.
 constexpr std::string_view kSiemens[] = {
     "TRAORI",  "TRAFOOF", "TRANS ", "ATRANS", "AROT",    "CYCLE",     "POCKET",
     "SUPA",    "ORIAXES", "ORIWKS", "ORIMKS", "CFTCP",   "COMPCAD",   "COMPCURV",
@@ -32,14 +32,14 @@ std::string without_comments(std::string_view line) {
         if (!is_comment) {
             out.push_back(static_cast<char>(std::toupper(static_cast<unsigned char>(c))));
         } else if (out.empty() || out.back() != '(') {
-            out.push_back('(');  // "=DC(90)" is no comment, and its beginning tells
+            out.push_back('(');  // "=DC(90)" is no comment; its beginning is enough to match
         }
         is_comment = is_comment && c != ')';
     }
     return out;
 }
 
-/// "N10 ", "12 "
+/// Removes a block number: "N10 ", "12 ".
 std::string_view without_number(std::string_view line) {
     std::size_t at = line.find_first_not_of(" \t");
     if (at != std::string_view::npos && line[at] == 'N') {

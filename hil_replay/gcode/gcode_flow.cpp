@@ -16,7 +16,7 @@ using enum FlowWord;
 
 constexpr std::size_t kFramesMax = 100;
 
-// A word that begins another one comes after it.
+// A word that is a prefix of another one is listed after it.
 constexpr std::array kWords = {
     std::pair{"ENDSUB", endsub},  std::pair{"SUB", sub},      std::pair{"CALL", call},
     std::pair{"RETURN", return_}, std::pair{"ENDIF", endif},  std::pair{"ELSEIF", elseif},
@@ -25,7 +25,7 @@ constexpr std::array kWords = {
     std::pair{"REPEAT", repeat},  std::pair{"BREAK", break_}, std::pair{"CONTINUE", continue_},
 };
 
-/// What follows a line number and a block delete, where that is an O-word; else nothing.
+/// The text after line number and block delete if it begins with an O-word, else an empty text.
 std::string flow_text(std::string_view line) {
     const std::size_t first = line.find_first_not_of(" \t\r/");
     if (first == std::string_view::npos ||
@@ -44,7 +44,7 @@ std::string flow_text(std::string_view line) {
     return at != std::string::npos && text[at] == 'O' ? text.substr(at) : std::string();
 }
 
-/// Nothing: `fault` says why.
+/// Reads one O-line. On failure returns nothing and sets `fault`.
 std::optional<FlowLine> read_flow_line(std::size_t line, std::string_view text,
                                        std::string& fault) {
     FlowLine out;
@@ -191,7 +191,7 @@ bool GcodeFlow::read_condition(const FlowLine& at, bool& is_true) {
     return true;
 }
 
-/// Reached from above: a subroutine runs when it is called.
+/// Skips the subroutine: it runs only when it is called.
 void GcodeFlow::run_sub(const FlowLine& at, std::size_t& next) {
     const FlowLine* const end = find_after(at, {endsub});
     if (end == nullptr) {
@@ -225,7 +225,7 @@ void GcodeFlow::end_call(const FlowLine& at, std::size_t& next) {
         return;
     }
     while (!frames_.empty() && frames_.back().start->word != sub) {
-        frames_.pop_back();  // loops that it left by its return
+        frames_.pop_back();  // loops that the return leaves
     }
     if (frames_.empty() || frames_.back().start->id != at.id) {
         fault_ = "no call of O" + at.id + " is under way";
@@ -258,7 +258,7 @@ void GcodeFlow::choose(const FlowLine& at, std::size_t& next) {
     next = here->line + 1;
 }
 
-/// The end of a branch that ran.
+/// Leaves the conditional after a branch that ran.
 void GcodeFlow::skip_to_endif(const FlowLine& at, std::size_t& next) {
     const FlowLine* const end = find_after(at, {endif});
     if (end == nullptr) {
@@ -274,7 +274,7 @@ const FlowLine* GcodeFlow::end_of(const FlowLine& start) const {
                                 : find_after(start, {endrepeat});
 }
 
-/// The start of a while loop, or the end of a do loop.
+/// Runs a while line: the start of a while loop, or the end of a do loop.
 void GcodeFlow::loop_while(const FlowLine& at, std::size_t& next) {
     bool is_true = false;
     if (!read_condition(at, is_true)) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// O-words: subroutines, conditions and loops of one program file. Source: LinuxCNC "O codes"; held
-// to its interpreter by tests/oracle/rs274_test.py.
+// O-words: subroutines, conditions and loops of one program file. Source: LinuxCNC "O codes";
+// tests/oracle/rs274_test.py compares them with its interpreter.
 #pragma once
 
 #include <cstddef>
@@ -43,12 +43,12 @@ struct FlowLine {
 
 class GcodeFlow {
   public:
-    /// @param lines  of the program, as written; both must outlive it
+    /// @param lines  of the program, as written; they and `parameters` must outlive it
     GcodeFlow(std::span<const std::string_view> lines, GcodeParameters& parameters);
 
     /// Runs the O-line at `line`.
-    /// @param next  the line to go on with; in: the one after
-    /// @return  empty, or what is wrong; the program can then not go on
+    /// @param next  out: the next line to run; in: the line after this one
+    /// @return  empty, or the fault; the program cannot continue after a fault
     [[nodiscard]] std::string run(std::size_t line, std::size_t& next);
 
   private:

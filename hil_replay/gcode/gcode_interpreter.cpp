@@ -69,7 +69,7 @@ void GcodeInterpreter::set_feed_and_tool() {
         state_.is_inverse_time = block.code(feed_mode) == 930;
         state_.is_per_revolution = block.code(feed_mode) == 950;
         if (!state_.is_inverse_time) {
-            state_.feed = 0;  // as in LinuxCNC, even where the mode was on
+            state_.feed = 0;  // as in LinuxCNC, even if the mode was already on
         }
     }
     if (block.has('F')) {
@@ -130,7 +130,7 @@ void GcodeInterpreter::change_tool() {
         return;
     }
     if (!state_.selected_tool) {
-        if (!block_->has('T')) {  // else its own fault was reported
+        if (!block_->has('T')) {  // else the fault of T was reported
             fault("M6", "no tool was selected; write its T word first");
         }
         return;
@@ -196,7 +196,7 @@ void GcodeInterpreter::stop() {
     switch (block_->code(ModalGroup::stop)) {
         case 0:
         case 10:
-            push(new_move(MoveKind::dwell));  // comes to rest
+            push(new_move(MoveKind::dwell));  // stops the axes
             break;
         case 20:
         case 300:

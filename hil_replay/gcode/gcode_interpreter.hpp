@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One block after the other to canonical moves. Modes and tools: gcode_interpreter.cpp; offsets:
+// Converts block after block to canonical moves. Modes and tools: gcode_interpreter.cpp; offsets:
 // gcode_offsets.cpp; tool centre point control: gcode_tip.cpp; motion: gcode_motion.cpp; canned
 // cycles: gcode_cycle.cpp.
 #pragma once
@@ -18,45 +18,45 @@ class GcodeInterpreter {
   public:
     GcodeInterpreter(const Machine& machine, const GcodeOptions& options, GcodeResult& result);
 
-    /// In the order of LinuxCNC's "Order of Execution": F counts in the unit that was on before the
-    /// block. Faults and moves go to the result.
+    /// Runs a block in LinuxCNC's "Order of Execution": F uses the unit active before the block.
+    /// Appends faults and moves to the result.
     void run(const GcodeBlock& block);
-    /// A block that did not run may have set F: a missing feed is then no news.
+    /// A skipped block may have set F: later blocks then report no missing feed.
     void skip_block() { state_.is_feed_unknown = true; }
     [[nodiscard]] bool has_ended() const { return state_.has_ended; }
-    /// What the control keeps in a numbered parameter: 5220 the work offset in use, 5400 the tool
-    /// in the spindle, 5420 to 5428 where the axes are, in the program's units and offsets.
+    /// Value of a numbered parameter of the control: 5220 the active work offset, 5400 the tool in
+    /// the spindle, 5420 to 5428 the axis positions in the program's units and offsets.
     [[nodiscard]] std::optional<double> parameter(std::uint32_t index) const;
 
   private:
     void fault(const std::string& word, std::string message);
     void set_feed_and_tool();
-    /// The number a T or H word means on this machine; a fault where it is none.
+    /// The machine's tool number for a T or H word; nothing, and a fault, if there is none.
     std::optional<std::uint16_t> tool_number(char letter);
     [[nodiscard]] const Tool* find_tool(std::uint16_t number) const;
     void change_tool();
     void dwell();
     void set_modes();
     void set_tool_length();
-    /// The offset of G43, G43.1 or G43.4; nothing, and a fault, where it has none.
+    /// The tool offset after the word `code` (-1: unchanged); if it has none, nothing and a fault.
     std::optional<AxisPositions> tool_offset(std::int32_t code);
-    /// Takes a new tool offset, and tool centre point control on or off. The axes stay where they
-    /// are; what changes is which position that is called.
+    /// Sets a new tool offset, and tool centre point control on or off. The axes do not move; only
+    /// the coordinates of their position change.
     void change_coordinates(const AxisPositions& offset, bool is_controlled);
     void move();
     [[nodiscard]] double word_value(char letter, const Axis& axis) const;
-    /// kNoIndex, and a fault, where the machine has no such axis.
+    /// The index of the axis; kNoIndex, and a fault, if the machine has no such axis.
     std::uint32_t named_axis(char letter);
-    /// What is added to a word of this axis: work offset, G52 or G92, tool length.
+    /// Sum of the offsets of this axis: work offset, G52 or G92, tool offset.
     [[nodiscard]] double offset_of(std::uint32_t axis) const;
     bool set_target(AxisPositions& target);
     bool set_feed(Move& next);
-    /// Of G94 or G95, for a move along the linear axes or of rotary ones alone, per minute; 0, and
-    /// a fault, where there is none.
+    /// The feed of G94 or G95 per minute: mm, or degrees if only rotary axes move. 0 if there is
+    /// none, with a fault unless a skipped block may have set it.
     double feed_per_minute(bool moves_linear);
     bool set_arc(Move& next);
     [[nodiscard]] double arc_center(char center_letter, char axis_letter) const;
-    /// By way of the words, if any, then to machine zero: the named axes, or all of them.
+    /// G28: moves to the words, if any, then the named axes, or all of them, to machine zero.
     void go_home();
     void write_offsets();
     void write_work_offset();
@@ -69,20 +69,20 @@ class GcodeInterpreter {
     void go_to(const Hole& hole, double height_mm, bool is_feed);
     void wait(double seconds);
     void stop();
-    /// Where the axes stand, in the coordinates of `position`.
+    /// The present axis positions in the coordinates of `position`.
     [[nodiscard]] AxisPositions standing_at() const;
     [[nodiscard]] Move new_move(MoveKind kind) const;
     void append(const Move& next);
-    /// The next move of the program; a fault, and its end, where it has too many.
+    /// Adds a move to the program; with too many moves adds a fault and ends the program instead.
     void push(const Move& next);
-    [[nodiscard]] double scale() const { return state_.is_inch ? 25.4 : 1.0; }  // mm a unit
+    [[nodiscard]] double scale() const { return state_.is_inch ? 25.4 : 1.0; }  // mm per unit
 
     const Machine& machine_;
     const GcodeOptions& options_;
     GcodeResult& result_;
     GcodeState state_;
     TravelWatch travel_;
-    std::optional<TipControl> tip_control_;  // made when a program first asks for it
+    std::optional<TipControl> tip_control_;  // made when a program first switches it on
     const GcodeBlock* block_ = nullptr;
 };
 

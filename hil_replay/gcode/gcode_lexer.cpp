@@ -52,7 +52,7 @@ bool strip_gcode_line(std::string_view text, std::string& out, GcodeLine& line) 
 
 namespace {
 
-/// Why a character that is neither letter nor number stops the reader.
+/// Sets the fault for a character that is not a letter where a word has to begin.
 void refuse_char(char c, GcodeLine& line) {
     line.fault_word = printable(c);
     switch (c) {
@@ -71,7 +71,7 @@ void refuse_char(char c, GcodeLine& line) {
     }
 }
 
-/// The letter and what stands behind it as far as it looks like one value, for messages.
+/// The letter and the following characters that may be its value, for messages.
 std::string_view first_word(std::string_view rest) {
     std::size_t end = 1;
     while (end < rest.size() && is_number_char(rest[end])) {
@@ -81,7 +81,7 @@ std::string_view first_word(std::string_view rest) {
     return rest.substr(0, is_value ? 2 : end);
 }
 
-/// One word or assignment off the front. False: the line has its fault.
+/// Reads one word or assignment from the front. On failure returns false and sets the fault.
 bool read_item(std::string_view& rest, bool is_first, const GcodeParameters* parameters,
                GcodeLine& line) {
     const char letter = rest.front();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One line of G-code to letters and numbers: blanks, case and comments do not matter, everything
-// else does.
+// Splits one line of G-code into letters and numbers. Ignores blanks, case and comments, and
+// nothing else.
 #pragma once
 
 #include <cstdint>
@@ -21,17 +21,17 @@ struct GcodeWord {
 };
 
 struct GcodeLine {
-    bool is_percent = false;       // a line with % alone
+    bool is_percent = false;       // a line with only %
     bool block_delete = false;     // began with '/'
-    std::vector<GcodeWord> words;  // N words left out
+    std::vector<GcodeWord> words;  // without N words
     std::vector<GcodeAssignment> assignments;
-    std::string flow;  // an O-word and what follows it, without blanks; there are no words then
-    // What stopped the reader; empty when the whole line was read.
+    std::string flow;  // an O-word and the text after it, without blanks; `words` is then empty
+    // The first fault; empty if the whole line was read.
     std::string fault_word;
     std::string fault;
 };
 
-/// Upper case without blanks and comments; a comment left open is a fault.
+/// Converts to upper case without blanks and comments; an open or nested comment is a fault.
 [[nodiscard]] bool strip_gcode_line(std::string_view text, std::string& out, GcodeLine& line);
 
 /// Reads one line (without its line end). Never throws on content, whatever the bytes are.

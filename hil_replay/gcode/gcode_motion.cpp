@@ -56,7 +56,7 @@ void GcodeInterpreter::move() {
         run_cycle(last_motion, has_axis);
         return;
     }
-    // Where the block has no motion word, make_gcode_block could not know which mode is on.
+    // Without a motion word in the block, make_gcode_block does not have the mode to check these.
     const bool takes_words = block.code(path) != -1 || block.code(non_modal) != -1;
     for (const char letter : {'L', 'P', 'Q'}) {
         const bool is_taken = takes_words || (letter == 'P' && (is_arc_mode || takes_p(block)));
@@ -112,7 +112,7 @@ bool GcodeInterpreter::set_target(AxisPositions& target) {
             target[index] = value + offset_of(index);
         }
         if (options_.takes_short_way && !state_.is_incremental && machine_.axes[index].unlimited) {
-            constexpr double kTurnTiny = 1e-12;  // rad: whole turns away is where it is
+            constexpr double kTurnTiny = 1e-12;  // rad: a word whole turns away is no move
             const double way = std::remainder(target[index] - state_.position[index], 2 * kPi);
             target[index] = state_.position[index] + (std::abs(way) < kTurnTiny ? 0.0 : way);
         }

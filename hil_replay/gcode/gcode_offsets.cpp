@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The words that write offsets: G10 L2 and L20, G52, G92 to G92.3.
-// Source: LinuxCNC "G-codes"; held to its interpreter by tests/oracle/rs274_test.py.
+// Source: LinuxCNC "G-codes"; tests/oracle/rs274_test.py compares them with its interpreter.
 #include <cmath>
 
 #include "hil_replay/gcode/gcode_interpreter.hpp"

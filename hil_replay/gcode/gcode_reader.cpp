@@ -39,7 +39,7 @@ std::vector<std::string_view> lines_of(std::string_view text) {
     return lines;
 }
 
-/// A program under way.
+/// Runs one program line by line.
 class Reading {
   public:
     Reading(std::string_view text, const Machine& machine, const GcodeOptions& options,
@@ -64,7 +64,7 @@ class Reading {
                 return;
             }
             const bool goes_on = run_line(line, next);
-            // What is jumped over counts as read.
+            // Lines that a jump skips count as read.
             result_.line_count = std::max(result_.line_count, static_cast<std::uint32_t>(next));
             if (!goes_on) {
                 return;
@@ -88,7 +88,7 @@ class Reading {
             {static_cast<std::uint32_t>(line + 1), std::move(word), std::move(message)});
     }
 
-    /// False: nobody can say what comes next.
+    /// Runs one line. False: the program cannot continue.
     bool run_line(std::size_t at, std::size_t& next) {
         const GcodeLine line = lex_gcode_line(lines_[at], &parameters_);
         const std::string_view control =

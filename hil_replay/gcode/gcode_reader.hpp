@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// RS-274 in LinuxCNC's dialect to canonical moves in machine coordinates: modal state, units,
-// offsets, tool lengths. What is read and what is refused: docs/reference/gcode.md.
+// Converts RS-274 in LinuxCNC's dialect to canonical moves in machine coordinates: modal state,
+// units, offsets, tool lengths. docs/reference/gcode.md lists supported and refused words.
 #pragma once
 
 #include <array>
@@ -15,25 +15,25 @@
 namespace axg {
 
 inline constexpr std::size_t kWorkOffsets = 9;             // G54..G59, G59.1..G59.3
-inline constexpr std::size_t kProgramMovesMax = 1U << 23;  // that anybody may ask for: 2 GB
+inline constexpr std::size_t kProgramMovesMax = 1U << 23;  // largest moves_max: 2 GB
 
 enum class BlockDelete : std::uint8_t {
-    refuse,  // which blocks run depends on a switch at the machine: the user has to say
-    skip,    // switch on: blocks with '/' are left out
+    refuse,  // an error: a switch at the machine decides which blocks run; the user must choose
+    skip,    // switch on: blocks with '/' do not run
     run,     // switch off: they run
 };
 
 struct GcodeOptions {
     AxisPositions start{};                                   // inside travel, mm or rad
     std::array<AxisPositions, kWorkOffsets> work_offsets{};  // mm or rad, zero unless stated
-    std::vector<std::string> ignored;  // "M428": words left out, echoed in the result
+    std::vector<std::string> ignored;  // "M428": words to skip, reported in the result
     std::vector<std::pair<std::uint16_t, std::uint16_t>>
         tools;         // program's number, machine's number
     std::string part;  // the body that carries the part; empty: the one that most axes move
     bool takes_short_way = false;  // absolute words of endless axes: half a turn at most
     BlockDelete block_delete = BlockDelete::refuse;
-    std::size_t faults_max = 20;          // reading stops there
-    std::uint64_t steps_max = 5'000'000;  // lines run, those of loops every time
+    std::size_t faults_max = 20;          // reading stops after this many
+    std::uint64_t steps_max = 5'000'000;  // lines to run, repeated lines included
     std::size_t moves_max = 1'000'000;
     std::uint64_t samples_max = 10'000'000;  // 2.8 h at 1 ms, a trace of 1.7 GB
     std::uint32_t sample_us = 1000;
@@ -46,7 +46,7 @@ struct IgnoredWord {
 };
 
 struct GcodeResult {
-    std::string text;  // of the program, where a file was read
+    std::string text;  // of the program, if read from a file
     Program program;   // usable only without faults
     std::vector<ProgramFault> faults;
     bool has_more_faults = false;
@@ -56,18 +56,18 @@ struct GcodeResult {
     std::uint32_t tool_changes = 0;
 };
 
-/// Reads a whole program. Every fault is collected up to faults_max; never throws on content.
-/// Rotary words are degrees, linear ones mm (or inch after G20); unlimited axes go the programmed
-/// way, or the short one where the options say so.
+/// Reads a whole program. Collects faults up to faults_max; never throws on content.
+/// Rotary words are degrees, linear ones mm (or inch after G20). Unlimited axes make the programmed
+/// turns, or at most half a turn with takes_short_way.
 [[nodiscard]] GcodeResult read_gcode(std::string_view text, const Machine& machine,
                                      const GcodeOptions& options);
 
-/// Axis words such as "X0 Y-10.5 C90" (mm and degrees) over `positions`; empty on success, else
-/// what is wrong.
+/// Reads axis words such as "X0 Y-10.5 C90" (mm and degrees) into `positions`. Returns an empty
+/// text on success, else the fault.
 [[nodiscard]] std::string read_axis_words(std::string_view text, const Machine& machine,
                                           AxisPositions& positions);
 
-/// Zero for every axis, moved to the nearest end of its travel where zero is outside.
+/// Zero for every axis, or the nearest end of its travel if zero is outside.
 [[nodiscard]] AxisPositions default_start(const Machine& machine);
 
 /// Index of the axis a letter names, or kNoIndex.

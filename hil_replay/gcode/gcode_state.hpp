@@ -11,8 +11,8 @@
 
 namespace axg {
 
-/// What a canned cycle keeps for the next one of its kind, in units of the program. The height of
-/// G98 is that before the first cycle of a row.
+/// Words of a canned cycle that apply to the next one of its kind, in units of the program. The
+/// height of G98 is the height before the first cycle of a row.
 struct CycleState {
     double r = 0, bottom = 0, dwell_s = 0, peck = 0;
     double first_height_mm = 0;  // machine coordinates
@@ -20,7 +20,7 @@ struct CycleState {
 };
 
 struct GcodeState {
-    std::int32_t motion = 800;  // nothing until a program says so
+    std::int32_t motion = 800;  // no motion mode until the program sets one
     std::int32_t plane = 170;
     bool is_inch = false;
     bool is_incremental = false;
@@ -29,13 +29,13 @@ struct GcodeState {
     double feed = 0;               // as programmed, per minute or per revolution
     double spindle_rev_min = 0;    // S
     bool is_feed_unknown = false;  // a refused block may have set it
-    double feed_scale = 1;         // 25.4 where inch was on when F was read
+    double feed_scale = 1;         // 25.4 if F was read in inch
     bool is_exact = false;         // G61, G61.1
     double blend_mm = -1;          // G64 P; negative: the planner's default
     std::size_t work_offset = 0;
     std::array<AxisPositions, kWorkOffsets> work_offsets{};  // mm or rad
-    AxisPositions local_offset{}, kept_local_offset{};  // G52 and G92; G92.3 takes the kept one
-    bool retracts_to_r = true;  // G99, which LinuxCNC starts with; false: G98
+    AxisPositions local_offset{}, kept_local_offset{};       // G52, G92; the second is for G92.3
+    bool retracts_to_r = true;                               // G99, LinuxCNC's default; false: G98
     CycleState cycle;
     AxisPositions tool_offset{};  // of G43 or G43.1, 0 after G49; mm or rad
     // Tool centre point control: by G43.4 until another word of its group, by M428 until M429.
@@ -43,10 +43,11 @@ struct GcodeState {
     std::uint32_t control = kNoIndex;            // Program::controls, while it is on
     std::optional<std::uint16_t> selected_tool;  // T, until M6 puts it into the spindle
     std::uint16_t spindle_tool = 0;
-    // Machine coordinates, or where control has commanded the tip: what words left out mean.
+    // Target of the last move: axes without a word remain there. Machine coordinates, or under tool
+    // centre point control the commanded position.
     AxisPositions position{};
-    // Where the axes stand in the same coordinates, while that is elsewhere: from a change of the
-    // tool offset under control to the next move.
+    // The actual position in the same coordinates while it differs: from a change of the tool
+    // offset under control to the next move.
     std::optional<AxisPositions> standing_at;
     bool has_ended = false;
 };

@@ -13,7 +13,7 @@ using enum ModalGroup;
 
 namespace {
 
-/// Equal but for rounding; mm or rad.
+/// Whether both are equal except for rounding; mm or rad.
 bool is_near(const AxisPositions& a, const AxisPositions& b) {
     constexpr double kTiny = 1e-9;
     return std::equal(a.begin(), a.end(), b.begin(),
@@ -50,7 +50,7 @@ std::optional<AxisPositions> GcodeInterpreter::tool_offset(std::int32_t code) {
         return offset;
     }
     if (code == 431) {
-        offset = state_.tool_offset;  // axes without a word keep theirs
+        offset = state_.tool_offset;  // axes without a word do not change
         for (const char letter : kAxisLetters) {
             if (block_->has(letter)) {
                 const std::uint32_t axis = named_axis(letter);
@@ -121,7 +121,7 @@ void GcodeInterpreter::change_coordinates(const AxisPositions& offset, bool is_c
     push(new_move(MoveKind::coordinates));
     if (was_controlled && is_controlled && !is_near(programmed, state_.position)) {
         state_.standing_at = state_.position;
-        state_.position = programmed;  // no word says that the tip is to be elsewhere
+        state_.position = programmed;  // no word changed the programmed position of the tip
     }
 }
 

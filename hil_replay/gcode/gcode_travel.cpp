@@ -17,7 +17,7 @@ struct Extent {
     double low, high;
 };
 
-/// True when the swept angle passes `angle_rad`, whole turns apart.
+/// Whether the swept angle passes `angle_rad`, modulo whole turns.
 bool passes(const Arc& arc, double angle_rad) {
     constexpr double kTwoPi = 2.0 * kPi;
     const double turn = std::fmod(angle_rad - arc.start_rad, kTwoPi);
@@ -26,9 +26,9 @@ bool passes(const Arc& arc, double angle_rad) {
     return std::abs(ahead) <= std::abs(arc.sweep_rad);
 }
 
-/// Ends of the move along one axis. An arc's largest radius bounds a spiral from outside.
+/// Ends of the move along one axis. The larger radius of a spiral bounds it from outside.
 Extent extent_of(const Move& move, std::uint32_t axis) {
-    Extent extent{move.target[axis], move.target[axis]};  // where it starts was checked before
+    Extent extent{move.target[axis], move.target[axis]};  // the start was checked before
     const Arc& arc = move.arc;
     if (move.kind != MoveKind::arc || (axis != arc.first && axis != arc.second)) {
         return extent;
@@ -54,7 +54,7 @@ std::string value_text(const Axis& axis, double value) {
     return text;
 }
 
-/// Ends of the travel; of an endless axis, what can be computed with.
+/// Ends of the travel; for an endless axis, the largest positions that the code can process.
 Extent travel_of(const Axis& axis) {
     const double bound = axis.kind == AxisKind::rotary ? kSinCosArgumentMax : kCoordinateMmMax;
     return axis.unlimited ? Extent{-bound, bound} : Extent{axis.min, axis.max};
@@ -128,7 +128,7 @@ std::vector<TravelExcess> check_travel(const Machine& machine, const AxisPositio
     std::vector<TravelExcess> out;
     for (std::uint32_t i = 0; i < machine.axes.size(); ++i) {
         if (move.target[i] == from[i] && move.kind == MoveKind::line) {
-            continue;  // reported already, by the move that went there
+            continue;  // checked with the move that ended there
         }
         add_excess(machine, i, extent_of(move, i), out);
     }

@@ -12,8 +12,8 @@
 namespace axg {
 namespace {
 
-constexpr std::uint32_t kOwnParameters = 30;     // a subroutine's: #1 to #30
-constexpr std::uint32_t kFirstOfControl = 5061;  // what LinuxCNC itself writes, from here on
+constexpr std::uint32_t kOwnParameters = 30;     // local to a subroutine: #1 to #30
+constexpr std::uint32_t kFirstOfControl = 5061;  // from here on only LinuxCNC itself writes
 constexpr std::uint32_t kFirstPosition = 5420;
 constexpr double kEqual = 1e-4;  // LinuxCNC's tolerance of EQ and NE
 constexpr int kDepthMax = 50;    // brackets within brackets
@@ -43,7 +43,7 @@ std::optional<double> read_number(std::string_view text) {
 
 struct Operator {
     const char* text;
-    int level;  // the lower, the later
+    int level;  // precedence: lower levels apply later
     double (*apply)(double, double);
 };
 
@@ -52,7 +52,7 @@ double modulo(double a, double b) {
     return rest < 0 ? rest + std::abs(b) : rest;
 }
 
-// ** before * so that the longer one is found first. All are left-associative.
+// ** precedes * so that the longer one is found first. All are left-associative.
 constexpr std::array kOperators = {
     Operator{"**", 3, [](double a, double b) { return std::pow(a, b); }},
     Operator{"*", 2, [](double a, double b) { return a * b; }},
@@ -104,7 +104,7 @@ std::optional<double> GcodeParameters::numbered(std::uint32_t index) const {
 }
 
 std::optional<double> GcodeParameters::named(const std::string& name) const {
-    // "_X": the same as 5420, and so on.
+    // "_X" is parameter 5420, and so on.
     constexpr std::string_view kAxes = "XYZABCUVW";
     const std::size_t axis =
         name.size() == 2 && is_global(name) ? kAxes.find(name[1]) : std::string_view::npos;
@@ -187,7 +187,7 @@ std::optional<double> GcodeValueReader::value() {
 
 std::optional<double> GcodeValueReader::number() {
     std::size_t end = 0;
-    // A sign within is the next operator of an expression.
+    // In an expression a sign after the first character is the next operator.
     while (end < rest_.size() && is_number_char(rest_[end]) &&
            (end == 0 || depth_ == 0 || (rest_[end] != '+' && rest_[end] != '-'))) {
         ++end;
@@ -220,7 +220,7 @@ std::optional<double> GcodeValueReader::bracket() {
                : refuse("the expression has no value: it divides by zero, or is not a number");
 }
 
-/// Operators of this level and tighter ones.
+/// Evaluates operators of this precedence level and higher ones.
 std::optional<double> GcodeValueReader::sum_of(int level) {
     if (level > kLevelMax) {
         return value();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a number in G-code may be: digits, a parameter, an expression. Angles in degrees.
-// Source: LinuxCNC "G-code overview", parameters and expressions; held to its interpreter by
-// tests/oracle/rs274_test.py.
+// Reads the forms of a number in G-code: digits, a parameter, an expression. Angles in degrees.
+// Source: LinuxCNC "G-code overview", parameters and expressions; tests/oracle/rs274_test.py
+// compares them with its interpreter.
 #pragma once
 
 #include <cstdint>
@@ -16,21 +16,22 @@ namespace axg {
 
 inline constexpr std::uint32_t kGcodeParametersMax = 5602;  // numbered ones are below
 
-/// Numbered and named parameters. Those of a subroutine's own begin anew with every call.
+/// Numbered and named parameters. Every call resets the local ones of a subroutine.
 class GcodeParameters {
   public:
-    /// What the control itself keeps there (5220, 5400, 5420 to 5428), or nothing.
+    /// Returns a parameter of the control itself (5220, 5400, 5420 to 5428), or nothing.
     using Live = std::function<std::optional<double>(std::uint32_t)>;
     explicit GcodeParameters(Live live);
 
-    /// Nothing: not kept by this reader, or a name that was never set.
+    /// Returns nothing for a number that this reader does not support, or a name never set.
     [[nodiscard]] std::optional<double> numbered(std::uint32_t index) const;
     [[nodiscard]] std::optional<double> named(const std::string& name) const;
-    /// False: no program may write there.
+    /// False: a program may not write this parameter.
     [[nodiscard]] bool set_numbered(std::uint32_t index, double value);
     void set_named(const std::string& name, double value);
 
-    /// A call: #1 to #30 are the arguments, then 0, and names without '_' in front are unknown.
+    /// Begins a call: #1 to #30 are the arguments, the rest of them 0; local names (without a
+    /// leading '_') are undefined.
     void enter(const std::vector<double>& arguments);
     void leave();
 
@@ -48,7 +49,7 @@ class GcodeParameters {
     std::vector<Scope> callers_;
 };
 
-/// One parameter that a line sets, in effect after the whole line was read.
+/// One parameter that a line sets, effective after the whole line was read.
 struct GcodeAssignment {
     std::uint32_t index = 0;  // 0: named
     std::string name;
@@ -58,16 +59,16 @@ struct GcodeAssignment {
 /// Reads values from the start of a text without blanks, in upper case.
 class GcodeValueReader {
   public:
-    /// @param parameters  null: only plain numbers; parameters and expressions are refused
+    /// @param parameters  null: accepts only plain numbers, refuses parameters and expressions
     GcodeValueReader(std::string_view text, const GcodeParameters* parameters)
         : rest_(text), parameters_(parameters) {}
 
-    /// A number, #parameter, [expression] or function, with a sign in front or none.
+    /// Reads a number, #parameter, [expression] or function, with or without a sign.
     [[nodiscard]] std::optional<double> value();
     /// "#3=..." or "#<name>=...".
     [[nodiscard]] std::optional<GcodeAssignment> assignment();
     [[nodiscard]] std::string_view rest() const noexcept { return rest_; }
-    /// Why nothing came back.
+    /// The reason if value() or assignment() returned nothing.
     [[nodiscard]] const std::string& fault() const noexcept { return fault_; }
 
   private:

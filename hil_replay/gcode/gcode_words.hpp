@@ -9,7 +9,7 @@
 
 namespace axg {
 
-/// Groups of which a block may hold one word. Source: LinuxCNC "G-code overview", modal groups.
+/// A block may contain one word of each group. Source: LinuxCNC "G-code overview", modal groups.
 enum class ModalGroup : std::uint8_t {
     non_modal,     // G4 G10 G28 G52 G53 G92
     motion,        // G0..G3 G73 G80..G89
@@ -46,7 +46,7 @@ struct GcodeWordRule {
     std::int32_t code;  // ten times the number: G91.1 is 911
     ModalGroup group;
     WordSupport support;
-    std::string_view reason;  // of a refusal, or what accepting means
+    std::string_view reason;  // of a refusal, or the effect of an accepted word
 };
 
 [[nodiscard]] std::span<const GcodeWordRule> gcode_word_rules();

@@ -35,8 +35,8 @@ void TimedGuard::restart(std::int64_t now_us) {
     start();
 }
 
-/// The guard leans its period towards the board, and may so come to one that has ended: it is due
-/// now.
+/// The guard shifts its period towards the board's, which may set its due time in the past: it is
+/// then due now.
 std::int64_t TimedGuard::next_due_us() const noexcept {
     return std::max(now_us_,
                     std::min(guard_->next_due_us(), has_result_ ? result_.done_us : INT64_MAX));
@@ -56,7 +56,7 @@ void TimedGuard::hear_result() {
 
 void TimedGuard::arrive(const CanArrival& arrival) {
     run_before(arrival.frame.time_us);
-    // Each is read at once, so there is room.
+    // The guard reads each arrival at once, so the queue has space.
     [[maybe_unused]] const bool is_taken = wire_.arrive(arrival);
     turn(arrival.frame.time_us);
 }
@@ -67,7 +67,7 @@ void TimedGuard::turn(std::int64_t now_us) {
         const bool has_cycle = has_result_ && result_.done_us <= now_us_;
         if (has_cycle) {
             has_result_ = false;
-            // The guard takes them all in the next line.
+            // The guard removes all results in the turn below.
             [[maybe_unused]] const bool is_pushed = queues_.results.push(result_);
         }
         const std::uint64_t permits = guard_->counters().permits;
@@ -88,7 +88,7 @@ void TimedGuard::turn(std::int64_t now_us) {
     }
 }
 
-/// A self-test takes no time; of the snapshots that wait, the newest is evaluated.
+/// A self-test needs no time; the engine evaluates only the newest of the waiting snapshots.
 void TimedGuard::evaluate() {
     has_query_ = false;
     const std::int64_t start_ns = live_.clock.now();
@@ -109,7 +109,7 @@ void TimedGuard::evaluate() {
     });
 }
 
-/// True: one of them came back, or was answered.
+/// True: one of them was echoed, or a reply arrived.
 bool TimedGuard::take_frames() {
     LiveNote note;
     while (queues_.notes.pop(note)) {
@@ -131,7 +131,7 @@ bool TimedGuard::take_frames() {
     return has_arrival;
 }
 
-/// For a board without hashes in a trace: it says what the guard says.
+/// Replies for a board without hashes in a trace: returns the guard's own hash.
 bool TimedGuard::agree(const CanFrame& frame) {
     const CanLayout& can = live_.machine.can;
     HashFrame hash;

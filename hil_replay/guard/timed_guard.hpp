@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The deployed guard, with a wire in memory and a clock that is passed in: under a recorded trace
-// and a simulated board. Its timers fire when the live guard's would; the engine's thread is a
-// call, whose result comes as much later as its caller says. No allocation after construction.
+// The deployed guard with a wire in memory and the caller's clock, for a recorded trace and a
+// simulated board. Its timers fire when the live guard's would; a call replaces the engine's
+// thread, and its result arrives after the caller's delay. No allocation after construction.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace axg {
 
-/// A cycle whose result the guard has heard.
+/// A cycle whose result the guard has received.
 struct TimedCycle {
     const LiveResult& result;
     std::int64_t spent_ns = 0;  // by the clock of LiveEngine; 0: there is none
@@ -22,18 +22,18 @@ struct TimedCycle {
 
 struct TimedGuardOptions {
     LiveOptions guard{};
-    /// When the guard is ready, it is armed: at once, or not before this. INT64_MAX: never.
+    /// Arms the guard when it is ready, but not before this. INT64_MAX: never.
     std::int64_t arm_from_us = INT64_MIN;
-    /// The wire gives each frame back at once. False: echoes come by `arrive`.
+    /// The wire echoes each frame at once. False: echoes arrive by `arrive`.
     bool echoes = true;
-    /// Says the guard's own hashes in place of a board that says none: a recorded one may have been
-    /// asked before the recording began.
+    /// Sends the guard's own hashes in place of a board that sends none: a recorded board may have
+    /// sent them before the recording began.
     bool answers_hashes = true;
-    /// Takes each frame that leaves, `time_us`: when.
+    /// Receives each frame that leaves; `time_us`: when.
     std::function<void(const CanFrame&)> sent{};
-    /// us that the engine takes for a cycle, of ns that it took here; empty: none.
+    /// Returns the engine's us for a cycle from the ns spent here; empty: 0.
     std::function<std::int64_t(std::int64_t spent_ns)> response_us{};
-    /// After each evaluation, whether its result will be heard or not: ns that it took here.
+    /// Called after each evaluation with the ns spent here, even if its result is never received.
     std::function<void(std::int64_t spent_ns)> evaluated{};
     // After each cycle, and for each note; may be empty.
     std::function<void(const TimedCycle&)> each{};
@@ -42,20 +42,20 @@ struct TimedGuardOptions {
 
 class TimedGuard {
   public:
-    /// `live` and what it names must outlive it.
+    /// The objects that `live` refers to must outlive it.
     TimedGuard(const LiveEngine& live, const TimedGuardOptions& options, std::int64_t now_us);
     TimedGuard(const TimedGuard&) = delete;
     TimedGuard& operator=(const TimedGuard&) = delete;
 
-    /// Timers and results that are due before `until_us`, in order of time.
+    /// Runs the timers and results that are due before `until_us`, in order of time.
     void run_before(std::int64_t until_us);
-    /// The same, then the frame at its time, or now where that has passed.
+    /// The same, then processes the frame at its time, or now if that has passed.
     void arrive(const CanArrival& arrival);
-    /// Turns on until the result that the engine works on is heard: nothing comes any more.
+    /// After the last frame: runs until the guard has received the engine's pending result.
     void hear_result();
-    /// When something is due, never before now_us(); INT64_MAX: never.
+    /// Time of the next timer or result, never before now_us(); INT64_MAX: none.
     [[nodiscard]] std::int64_t next_due_us() const noexcept;
-    /// A new process on the same wire, after a person's reset.
+    /// Starts a new process on the same wire, after a person's reset.
     void restart(std::int64_t now_us);
 
     [[nodiscard]] const GuardNode& guard() const noexcept { return *guard_; }
@@ -80,7 +80,7 @@ class TimedGuard {
     LatchCell latch_{};
     std::optional<GuardNode> guard_;
     std::int64_t now_us_;
-    // Of the engine: a query waits; a result comes at its done_us.
+    // State of the engine: a query waits; a result is due at its done_us.
     bool has_query_ = false, has_result_ = false, was_armed_ = false;
     LiveResult result_{};
     std::int64_t spent_ns_ = 0;

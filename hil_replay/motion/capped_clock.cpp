@@ -10,8 +10,8 @@ namespace axg {
 
 namespace {
 
-/// The speed after a step that ends on the braking curve into the end of `cell`: v^2 = out^2 +
-/// 2 a (end - x), where x is a step further at the mean speed. 0 where no speed is left.
+/// The speed after a step that ends on the braking curve to the end of `cell`: v^2 = out^2 +
+/// 2 a (end - x), where x is the place after a step at the mean speed. 0 if no speed solves it.
 double speed_on_curve(const Cell& cell, double at_mm, double speed) noexcept {
     const double slope = cell.acceleration * kMotionStepS;
     const double left_mm = cell.start_mm + cell.length_mm - at_mm;
@@ -43,11 +43,11 @@ double CappedClock::step(double speed_share) noexcept {
         return at_mm_ + 0.5 * (speed_ + speed) * kMotionStepS;
     };
     double speed = std::clamp(wanted, speed_ - change, speed_ + change);
-    // The plan's own limits at the place that this step leads to: its cell's speed, and what can
-    // still be braked for what comes behind it.
+    // The plan's own limits at the place after this step: the speed of its cell, and the speed from
+    // which the path can still brake to the speed at the end of that cell.
     const Cell& ahead = (*cells_)[cell_at(*cells_, cell_, reached_mm(speed))];
     speed = std::min({speed, ahead.speed_max, speed_on_curve(ahead, at_mm_, speed_)});
-    if (wanted <= 0 && speed <= 0) {  // it stands where it is, and goes on from there
+    if (wanted <= 0 && speed <= 0) {  // at rest within the run; a later share moves it on
         at_mm_ = std::min(reached_mm(0), total_mm_);
         speed_ = 0;
         return at_mm_;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The distance along a run as a function of time, where the axes keep to a share of their largest
-// speeds that may change at any step: ProfileClock's plan is the most, and the speed follows the
-// share with the accelerations of that plan. So what docs/theory/motion.md proves of a profile
-// holds.
+// The distance along a run as a function of time, while the axes obey a share of their largest
+// speeds that may change at any step. The plan of ProfileClock bounds the speed, which follows the
+// share with the accelerations of that plan. So the proofs of docs/theory/motion.md about a profile
+// hold.
 #pragma once
 
 #include <cstddef>
@@ -14,10 +14,10 @@ namespace axg {
 
 class CappedClock {
   public:
-    /// Both as plan_run and plan_rapid left them; they must outlive the run.
+    /// @param cells, rapids  results of plan_run and plan_rapid; they must outlive the run
     void begin(const std::vector<Cell>* cells, const std::vector<RapidCell>* rapids) noexcept;
-    /// Distance after another step of kMotionStepS, mm, before averaging; stays at the end.
-    /// @param speed_share  of each axis' largest speed; 0: it comes to rest, and stands
+    /// Distance after another step of kMotionStepS, mm, before averaging; constant after the end.
+    /// @param speed_share  of each axis' largest speed; 0: brakes to rest
     double step(double speed_share) noexcept;
     [[nodiscard]] bool is_at_end() const noexcept { return is_at_end_; }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where on the plan of a run a clock is. mm of path.
+// Finds the place of a clock in the plan of a run. mm of path.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace axg {
 
-/// The cell that holds `mm`, or the last. Precondition: it is `from` or behind it.
+/// The cell that contains `mm`, or the last. Precondition: it is `from` or a later one.
 [[nodiscard]] inline std::size_t cell_at(const std::vector<Cell>& cells, std::size_t from,
                                          double mm) noexcept {
     while (from + 1 < cells.size() && cells[from + 1].start_mm <= mm) {

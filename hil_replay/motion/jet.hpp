@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A value with its first three derivatives along a path, and the arithmetic that carries them: one
-// formula gives the position and how fast it turns. Units: those of the value, per mm of path.
+// A value with its first three derivatives along a path, and arithmetic on all four: one formula
+// gives a position and its derivatives. Units: those of the value, per mm of path.
 // Source: Taylor arithmetic, Griewank and Walther, "Evaluating Derivatives", 2008, chapter 13.
 #pragma once
 

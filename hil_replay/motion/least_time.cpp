@@ -7,7 +7,7 @@
 namespace axg {
 namespace {
 
-constexpr double kShareOfMove = 0.5;  // what two blended corners leave of it
+constexpr double kShareOfMove = 0.5;  // the least that two blended corners leave of its time
 
 double least_seconds(const Move& move, const AxisPositions& from, const MotionLimits& limits) {
     if (move.kind == MoveKind::dwell) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long a program takes at least, from its moves alone: enough to refuse a day of dwell before a
-// byte of it is written. The motion itself takes longer.
+// A lower bound of a program's duration, computed only from its moves: enough to refuse a day of
+// dwell before any output. The motion itself is longer.
 #pragma once
 
 #include <cstddef>
@@ -12,14 +12,14 @@
 
 namespace axg {
 
-/// The move at which the program has taken longer than `seconds_max`; moves.size(): it may take
-/// less. A dwell counts in full. A move counts half of its time at full speed, or at its feed, for
-/// a blended corner cuts no more of it. Moves of a tip count nothing.
-/// Cost: a few operations a move.
+/// The first move that raises the lower bound above `seconds_max`; moves.size() if none does. A
+/// dwell counts in full. A move counts half of its time at full speed or at its feed: blended
+/// corners shorten it by no more. Moves under tool centre point control count 0 s.
+/// Cost: a few operations per move.
 [[nodiscard]] std::size_t first_move_beyond(const Program& program, const MotionLimits& limits,
                                             double seconds_max);
 
-/// What is wrong with a program whose motion has more samples than it may have.
+/// The message for a program whose motion has more than `samples_max` samples.
 [[nodiscard]] std::string too_many_samples(std::uint64_t samples_max);
 
 }  // namespace axg

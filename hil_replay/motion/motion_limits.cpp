@@ -9,8 +9,8 @@
 namespace axg {
 namespace {
 
-// Longer smoothing would let one soft axis make every stop of the machine slow; its acceleration is
-// lowered instead.
+// With longer smoothing one axis of low jerk would slow every stop of the machine. Instead the
+// planner lowers the acceleration of that axis.
 constexpr double kSmoothSMin = 1e-3, kSmoothSMax = 0.2;
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the planner may ask of the axes, and a meter that checks what came out.
+// Limits of the axes for the planner, and a meter that checks the planned motion.
 #pragma once
 
 #include <array>
@@ -25,13 +25,13 @@ struct MotionLimits {
     std::array<double, kAxesMax>
         metric{};  // path mm a unit: 1 for mm, 180/pi for rad (one degree counts one mm)
     std::array<std::uint8_t, kAxesMax>
-        feed_group{};     // 0: X Y Z, 1: U V W, 2: rotary; what F counts along
+        feed_group{};     // 0: X Y Z, 1: U V W, 2: rotary; F counts along one group
     double cap_mm_s = 0;  // of the path of X Y Z
 };
 [[nodiscard]] MotionLimits make_motion_limits(const Machine& machine);
 
-/// Largest first, second and third differences of positions on the 0.1 ms grid, over their step:
-/// the speed, acceleration and jerk that the trace really asks for.
+/// Largest first, second and third differences of positions on the 0.1 ms grid, divided by powers
+/// of the step: the actual speed, acceleration and jerk of the trace.
 class LimitMeter {
   public:
     explicit LimitMeter(std::uint32_t axis_count) : axis_count_(axis_count) {}

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A corner is rounded by averaging its tangent with the kernel K(x) = 15/16 (1 - x^2)^2 over [-d,
-// d]: position, speed, acceleration and jerk stay continuous, the tangent stays between the two,
-// and the corner point is missed by 5/32 d |t_out - t_in|. Derivation and bounds:
+// Rounds a corner by averaging its tangent with the kernel K(x) = 15/16 (1 - x^2)^2 over [-d, d]:
+// position, speed, acceleration and jerk remain continuous, the tangent remains between the two,
+// and the path misses the corner point by 5/32 d |t_out - t_in|. Derivation and bounds:
 // docs/theory/motion.md.
 #include "hil_replay/motion/motion_path.hpp"
 
@@ -18,15 +18,15 @@ constexpr double kKernelMax =
     15.0 / 16.0;  // times 1/d: second derivative for a unit tangent change
 constexpr double kKernelSlopeMax =
     1.4433756729740645;                 // 15/16 * 4 x (1 - x^2) at x = 1/sqrt(3); times 1/d^2
-constexpr double kTangentTiny = 1e-10;  // a corner this flat is none: 17 mm/s3 of jerk at 10 m/min
-constexpr double kFloatUp = 1 + 1e-6;   // a float of it is no less
-constexpr double kCurveMargin = 0.999;  // differences on the grid against derivatives
+constexpr double kTangentTiny = 1e-10;  // a flatter corner is none: 17 mm/s3 of jerk at 10 m/min
+constexpr double kFloatUp = 1 + 1e-6;   // the product is no less after rounding to float
+constexpr double kCurveMargin = 0.999;  // differences on the grid exceed derivatives by less
 
-// Under tool centre point control the axes' derivatives vary along a line, and are sampled: so many
-// degrees of turning a piece, and so much beyond the largest sample.
+// Under tool centre point control the axes' derivatives vary along a line and are sampled: the most
+// degrees of turning per piece, samples per piece, and a factor on the largest sample.
 constexpr double kTurnDegMax = 4;
-constexpr int kLineSamples = 5;    // a degree apart: a sine's top is missed by 4e-5 of it
-constexpr int kBlendSamples = 17;  // the kernel's steepest place is missed by 1 %
+constexpr int kLineSamples = 5;    // one per degree: the error at the top of a sine is 4e-5 of it
+constexpr int kBlendSamples = 17;  // the error at the kernel's steepest place is 1 %
 constexpr double kLineSlack = 1.002, kBlendSlack = 1.02;
 
 /// Largest |dq/ds|, |d2q/ds2|, |d3q/ds3| of each axis inside a piece.
@@ -48,8 +48,7 @@ bool is_in_plane(const Move& move, std::uint32_t axis) {
 }
 
 double arc_length_mm(const Arc& arc) {
-    // A spiral's radius changes by the dialect's tolerance only: its mean radius serves as the
-    // measure of length.
+    // A spiral's radius changes only by the dialect's tolerance: the mean radius gives the length.
     return std::abs(arc.sweep_rad) * (arc.radius_start_mm + arc.radius_end_mm) / 2.0;
 }
 
@@ -74,8 +73,8 @@ std::int64_t length_units(const Program& program, std::uint32_t index, const Mot
         1, std::llround(metric_length(program, index, limits) * kPathUnitsPerMm));
 }
 
-/// Length that F counts along: X Y Z where they move, else U V W, else the rotary axes in degrees.
-/// [group]
+/// Lengths of the move along each group. F counts along X Y Z if they move, else along U V W, else
+/// along the rotary axes in degrees. [group]
 std::array<double, 3> group_lengths(const Program& program, std::uint32_t index,
                                     const MotionLimits& limits) {
     const Move& move = program.moves[index];
@@ -94,7 +93,7 @@ std::array<double, 3> group_lengths(const Program& program, std::uint32_t index,
     return {std::sqrt(sums[0]), std::sqrt(sums[1]), std::sqrt(sums[2])};
 }
 
-/// The programmed speed and the cap, mm of path a second.
+/// The lower of the programmed speed and the cap, mm of path per second.
 double feed_speed(const Program& program, std::uint32_t index, const MotionLimits& limits,
                   const MotionOptions& options, double length_mm) {
     const Move& move = program.moves[index];
@@ -160,7 +159,8 @@ SpeedPair limit_piece(const Bounds& bounds, const MotionLimits& limits, double f
     if (!bounds.is_curved) {
         return {speed, acceleration, rapid, shares};
     }
-    // What the curve takes is missing for speeding up: the best of a few shares.
+    // The curve needs acceleration that is then not available to change speed. Tries a few shares
+    // and selects the fastest.
     SpeedPair best{0, 0, rapid, shares};
     for (const double share : {0.9, 0.75, 0.6, 0.45, 0.3, 0.15}) {
         const double reached = curved_speed(bounds, limits, share * acceleration, speed);
@@ -193,7 +193,7 @@ Bounds arc_bounds(const Program& program, std::uint32_t index, const MotionLimit
                   double length_mm) {
     Bounds bounds = line_bounds(program, index, limits, length_mm);
     const Arc& arc = program.moves[index].arc;
-    const double turn = std::abs(arc.sweep_rad) / length_mm;  // rad of angle a mm of path
+    const double turn = std::abs(arc.sweep_rad) / length_mm;  // rad of angle per mm of path
     const double radius = std::max(arc.radius_start_mm, arc.radius_end_mm);
     const double spiral = std::abs(arc.radius_end_mm - arc.radius_start_mm) / length_mm;
     for (const std::uint32_t axis : {arc.first, arc.second}) {
@@ -205,7 +205,7 @@ Bounds arc_bounds(const Program& program, std::uint32_t index, const MotionLimit
     return bounds;
 }
 
-/// How far the rotary axes turn along a move, and an arc with them, degrees.
+/// Sum of the turns of the rotary axes along a move, and of the sweep of an arc, degrees.
 double turning_deg(const Program& program, std::uint32_t index, const MotionLimits& limits) {
     const Move& move = program.moves[index];
     const AxisPositions& from = start_of(program, index);
@@ -218,7 +218,7 @@ double turning_deg(const Program& program, std::uint32_t index, const MotionLimi
     return turning;
 }
 
-/// The bounds of a piece of which only the derivatives at a place are known.
+/// The bounds of a piece from samples, because only derivatives at single places can be computed.
 Bounds sampled_bounds(const Program& program, const Piece& piece, const MotionLimits& limits,
                       int samples) {
     PieceCurve curve;
@@ -246,8 +246,8 @@ Bounds sampled_bounds(const Program& program, const Piece& piece, const MotionLi
 }
 
 struct Corner {
-    bool passes = false;  // without coming to rest
-    double half_mm = 0;   // 0: straight on
+    bool passes = false;  // the path does not stop here
+    double half_mm = 0;   // half length of the blend; 0: straight on
     SpeedPair limit{};    // of the blend
 };
 
@@ -278,8 +278,8 @@ Leg make_leg(const Program& program, std::uint32_t index, const MotionLimits& li
     return leg;
 }
 
-/// Whether a blend costs less time than coming to rest, which takes the smoothing time and speeding
-/// down and up.
+/// Whether a blend costs less time than a stop, which costs the smoothing time, braking and
+/// acceleration.
 bool is_worth_blending(const Corner& corner, const Leg& in, const Leg& out, double smooth_s) {
     const double around = std::min(in.limit.speed, out.limit.speed);
     const double acceleration = std::min(in.limit.acceleration, out.limit.acceleration);
@@ -360,8 +360,8 @@ void add_piece(Run& run, PieceKind kind, std::uint32_t move, std::int64_t offset
     }
 }
 
-/// A move between its blends. Where its curvature varies it is cut, so that one quick place does
-/// not slow all of it.
+/// Adds the part of a move between its blends. Cuts it if its curvature varies, so that one place
+/// with tight limits does not slow all of it.
 void add_leg(const Program& program, std::uint32_t index, const MotionLimits& limits,
              const Leg& leg, std::int64_t from, std::int64_t to, Run& run) {
     const Move& move = program.moves[index];
@@ -404,7 +404,7 @@ void build_run(const Program& program, std::uint32_t first, const MotionLimits& 
     run.length = 0;
     run.pieces.clear();
     Leg leg = make_leg(program, first, limits, options);
-    std::int64_t taken = 0;  // by the blend at the start of the move
+    std::int64_t taken = 0;  // part of the move in the blend at its start
     for (std::uint32_t index = first;; ++index) {
         ++run.move_count;
         const std::int64_t length = length_units(program, index, limits);

@@ -8,14 +8,14 @@
 namespace axg {
 namespace {
 
-/// A piece's limits, in force from the averaging distance before the piece to the same distance
-/// after it.
+/// A piece's limits, valid from the averaging distance before the piece to the same distance after
+/// it.
 struct Zone {
     double start_mm, end_mm, speed, acceleration, rapid;
 };
 
 std::vector<Zone> make_zones(const Run& run, const MotionLimits& limits) {
-    // Three steps more than the window: third differences look that far.
+    // Three steps more than the window: third differences reach that far.
     const double window_s = limits.smooth_s + 3 * kMotionStepS;
     const double total_mm = static_cast<double>(run.length) * kMmPerPathUnit;
     std::vector<Zone> zones;
@@ -92,7 +92,7 @@ double reachable(double speed, const Cell& cell) {
     return std::sqrt(speed * speed + 2 * cell.acceleration * cell.length_mm);
 }
 
-/// The fastest speed inside a cell: what its length and its two ends allow.
+/// The fastest speed inside a cell that its length, its limit and the speeds at its ends allow.
 double peak_of(const Cell& cell) {
     const double squares = cell.speed_in * cell.speed_in + cell.speed_out * cell.speed_out;
     const double peak = std::sqrt(squares / 2 + cell.acceleration * cell.length_mm);
@@ -164,7 +164,7 @@ void ProfileClock::enter_cell() noexcept {
     enter_phase(0);
 }
 
-/// False when the cell has no such phase left.
+/// Returns false if the cell has no such phase.
 bool ProfileClock::enter_phase(int phase) noexcept {
     const Cell& cell = (*cells_)[cell_];
     phase_ = phase;

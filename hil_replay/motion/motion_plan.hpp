@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The speed along one run: bounded acceleration, at rest at both ends, slow enough around every
-// piece that averaging over the smoothing time keeps that piece's limits. Proof:
+// piece that the motion averaged over the smoothing time obeys that piece's limits. Proof:
 // docs/theory/motion.md.
 #pragma once
 
@@ -21,8 +21,8 @@ struct Cell {
 /// @param cells  out; in order along the run, covering it
 void plan_run(const Run& run, const MotionLimits& limits, std::vector<Cell>& cells);
 
-/// Up to `end_mm` no axis is faster than its largest speed while the path is no faster than this,
-/// whatever the program asks for.
+/// Up to `end_mm` no axis exceeds its largest speed if the path does not exceed `speed`, whatever
+/// the programmed feed.
 struct RapidCell {
     double end_mm = 0, speed = 0;
 };
@@ -37,7 +37,7 @@ void plan_rapid(const Run& run, const MotionLimits& limits, std::vector<RapidCel
 class ProfileClock {
   public:
     void begin(const std::vector<Cell>* cells);
-    /// Distance after another step of kMotionStepS, mm; stays at the end once there.
+    /// Distance after another step of kMotionStepS, mm; constant after the end.
     double step() noexcept;
     [[nodiscard]] bool is_at_end() const noexcept { return is_at_end_; }
 

@@ -35,7 +35,7 @@ bool MotionSampler::next(MotionSample& out) {
     return true;
 }
 
-/// False after the last move.
+/// Returns false after the last move.
 bool MotionSampler::begin_move() {
     if (move_ >= program_.moves.size()) {
         return false;
@@ -50,7 +50,7 @@ bool MotionSampler::begin_move() {
         ++move_;
     } else if (move.kind == MoveKind::tool_change) {
         current_.tool = move.tool;
-        standing_steps_ = 1;  // so that the change is seen even where nothing moves
+        standing_steps_ = 1;  // one sample shows the change even if no axis moves
         ++move_;
     } else {
         begin_run();
@@ -95,8 +95,7 @@ double MotionSampler::step_capped() {
 }
 
 void MotionSampler::step_run(MotionSample& out) {
-    // The true end is the run's whole length: rounding of the profile's own sum may end a hair
-    // beside it.
+    // At the end the distance is the run's exact length: the profile's sum has rounding errors.
     const double reached_mm = is_capped() ? step_capped() : clock_.step();
     const bool is_at_end = axis_shares_ != nullptr   ? planned_.is_at_end()
                            : speed_share_ != nullptr ? capped_.is_at_end()

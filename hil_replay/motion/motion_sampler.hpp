@@ -27,17 +27,17 @@ class MotionSampler {
   public:
     MotionSampler(const Program& program, const MotionLimits& limits, const MotionOptions& options);
 
-    /// From the next stretch on no axis is faster than this share of its largest speed, which is
-    /// read at every step and reached with the accelerations of the plan; 0: they stand.
+    /// From the next run on no axis is faster than this share of its largest speed. Reads the share
+    /// at every step; the speed follows with the accelerations of the plan. 0: the axes stop.
     /// @param speed_share  must outlive the sampler
     void obey(const double* speed_share) noexcept { speed_share_ = speed_share; }
-    /// The same with a share of its own for each axis, kept through every corner.
+    /// The same with a separate share for each axis, which it obeys through every corner.
     void obey(AxisShares* shares) noexcept { axis_shares_ = shares; }
 
     /// The next sample; the first is the start pose at index 0. False after the last move's end.
     bool next(MotionSample& out);
 
-    /// Steps more than it would have been without a share to keep to, up to the last sample.
+    /// Additional steps up to the last sample because of the shares.
     [[nodiscard]] std::int64_t lost_steps() const noexcept { return lost_steps_; }
 
     [[nodiscard]] std::uint32_t run_count() const noexcept { return run_count_; }
@@ -60,7 +60,7 @@ class MotionSampler {
     MotionSample current_;
     bool has_started_ = false;
     std::uint32_t move_ = 0;            // next to begin
-    std::uint64_t standing_steps_ = 0;  // left of a dwell
+    std::uint64_t standing_steps_ = 0;  // remaining steps of a dwell
     bool is_running_ = false;
     std::uint32_t run_count_ = 0, blend_count_ = 0;
 
@@ -68,9 +68,9 @@ class MotionSampler {
     std::vector<Cell> cells_;
     std::vector<RapidCell> rapids_;
     ProfileClock clock_;
-    CappedClock capped_;    // in its place, with a share to keep to
-    PlannedClock planned_;  // or with one for each axis
-    double free_mm_ = 0;    // of `clock_`, which then only says when it would be there
+    CappedClock capped_;    // replaces `clock_` if there is a common share
+    PlannedClock planned_;  // or if there is a share for each axis
+    double free_mm_ = 0;    // distance of `clock_`, which then only measures the lost time
     std::int64_t lost_steps_ = 0;
     const double* speed_share_ = nullptr;
     AxisShares* axis_shares_ = nullptr;

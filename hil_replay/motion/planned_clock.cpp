@@ -20,7 +20,7 @@ double end_of(const Piece& piece) noexcept {
     return static_cast<double>(piece.start + piece.length) * kMmPerPathUnit;
 }
 
-/// The speed after a step such that the next ones can brake to `least` at `end_mm`.
+/// The largest speed after a step from which the next steps can brake to `least` at `end_mm`.
 double speed_towards(double end_mm, double least, double acceleration, double at_mm,
                      double speed) noexcept {
     const double slope = acceleration * kMotionStepS;
@@ -44,7 +44,7 @@ void PlannedClock::begin(const Run* run, const MotionLimits& limits,
     total_mm_ = is_at_end_ ? 0 : cells->back().start_mm + cells->back().length_mm;
 }
 
-/// Every piece that averaging may still hold, and those ahead up to where the path could stop.
+/// Visits every piece in the averaging window, and those ahead up to where the path could stop.
 template <class Visit>
 void PlannedClock::visit_ahead(const AxisShares& shares, Visit&& visit) noexcept {
     const std::vector<Piece>& pieces = run_->pieces;
@@ -76,8 +76,8 @@ void PlannedClock::visit_ahead(const AxisShares& shares, Visit&& visit) noexcept
     }
 }
 
-/// The fastest that keeps what is wanted in every piece: a piece's limit is in force from the way
-/// that averaging takes at this limit before it to the same way behind it.
+/// The largest speed, up to `speed`, that obeys the shares in every piece. A piece's limit applies
+/// from the averaging distance at this limit before the piece to the same distance after it.
 double PlannedClock::speed_within(const AxisShares& shares, double speed) noexcept {
     visit_ahead(shares, [&](const Piece&, const Place& place) {
         const double from_mm = place.start_mm - place.most * window_s_;
@@ -97,7 +97,7 @@ void PlannedClock::note_needs(AxisShares& shares) noexcept {
             return std::min(std::sqrt(std::max(0.0, square)), piece.speed);
         };
         double speed = speed_after(place.start_mm - place.most * window_s_);
-        if (speed > place.most * (1 + kSpeedSlack)) {  // it comes to it too fast to keep it
+        if (speed > place.most * (1 + kSpeedSlack)) {  // too fast to brake to the limit in time
             speed = speed_after(place.start_mm - speed_ * window_s_);
         }
         for (std::uint32_t axis = 0; axis < axes_; ++axis) {
@@ -117,13 +117,13 @@ double PlannedClock::step(AxisShares& shares) noexcept {
         return at_mm_ + 0.5 * (speed_ + speed) * kMotionStepS;
     };
     double speed = std::max(wanted, speed_ - change);
-    // The plan's own limits at the place that this step leads to.
+    // The plan's own limits at the place after this step.
     const Cell& ahead = (*cells_)[cell_at(*cells_, cell_, reached_mm(speed))];
     const double planned =
         std::min({speed, ahead.speed_max,
                   speed_towards(ahead.start_mm + ahead.length_mm, ahead.speed_out,
                                 ahead.acceleration, at_mm_, speed_)});
-    if (wanted <= 0 && speed <= 0) {  // it stands where it is, and goes on from there
+    if (wanted <= 0 && speed <= 0) {  // at rest within the run; later shares move it on
         at_mm_ = std::min(reached_mm(0), total_mm_);
         speed_ = 0;
         note_needs(shares);

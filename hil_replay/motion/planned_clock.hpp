@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The distance along a run as a function of time, where each axis keeps to a share of its largest
-// speed that may change at any step. A piece of the path allows the speed at which every axis keeps
-// its share. That is in force from as long as is averaged before the piece to as long behind it,
-// and the speed brakes towards it with the least acceleration on the way. What an axis needs is, of
-// every piece up to where the path could stop, the share that it has there if braked for from now
-// on. Source: docs/theory/motion.md.
+// The distance along a run as a function of time, while each axis obeys a share of its largest
+// speed that may change at any step. A piece of the path allows the speed at which every axis obeys
+// its share. This limit applies from one averaging time before the piece until one after it; the
+// speed brakes to it with the least acceleration on the way. The need of an axis is its largest
+// share in all pieces up to where the path could stop, if the path brakes for them from now on.
+// Source: docs/theory/motion.md.
 #pragma once
 
 #include <cstddef>
@@ -17,17 +17,17 @@ namespace axg {
 
 class PlannedClock {
   public:
-    /// `run` and `cells`, as plan_run left them, must outlive the run.
+    /// @param run, cells  `cells` from plan_run; both must outlive the run
     void begin(const Run* run, const MotionLimits& limits, const std::vector<Cell>* cells) noexcept;
-    /// Distance after another step of kMotionStepS, mm, before averaging; stays at the end.
+    /// Distance after another step of kMotionStepS, mm, before averaging; constant after the end.
     double step(AxisShares& shares) noexcept;
     [[nodiscard]] bool is_at_end() const noexcept { return is_at_end_; }
 
   private:
-    /// A piece of the path that the axes come to, or have not left for as long as is averaged.
+    /// A piece of the path ahead, or one that the averaging window still contains.
     struct Place {
-        double start_mm, end_mm, most;  // most: path speed that is wanted in it
-        double acceleration;            // on the way there
+        double start_mm, end_mm, most;  // most: largest path speed that the shares allow in it
+        double acceleration;            // the least on the way to it
     };
     template <class Visit>
     void visit_ahead(const AxisShares& shares, Visit&& visit) noexcept;

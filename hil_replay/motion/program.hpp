@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A program as canonical moves: every target is an axis position in machine coordinates, mm or rad,
-// or under tool centre point control a position of the tip. No dialect, no units switch, no offsets
-// left: what the interpreter wrote is what the motion planner moves.
+// or under tool centre point control a position of the tip. The interpreter has resolved dialect,
+// units and offsets; the motion planner uses the moves without change.
 #pragma once
 
 #include <cstdint>
@@ -18,14 +18,14 @@ enum class MoveKind : std::uint8_t {
     arc,
     dwell,
     tool_change,
-    coordinates,  // nothing moves: `target` is where the axes stand, as the moves that follow say
-                  // it
+    coordinates,  // no axis moves: `target` is the present position in the coordinates of the
+                  // following moves
 };
 
 enum class FeedKind : std::uint8_t {
     rapid,       // as fast as the axes and the cap allow
     per_minute,  // mm/min along X Y Z (else U V W), deg/min when only rotary axes move
-    inverse,     // the whole move takes 1/feed minutes
+    inverse,     // the duration of the whole move is 1/feed minutes
 };
 
 /// A circle in the plane of two linear axes; every other axis of the move follows linearly with the
@@ -42,20 +42,20 @@ struct Arc {
 struct Move {
     MoveKind kind = MoveKind::line;
     FeedKind feed_kind = FeedKind::rapid;
-    bool is_exact = false;   // comes to rest at its end (G61, G28's way point)
+    bool is_exact = false;   // stops at its end (G61, G28's way point)
     std::uint16_t tool = 0;  // tool_change: number of the tool now in the spindle
     std::uint32_t line = 0;  // of the program file
     double feed = 0;         // mm/min, deg/min or 1/min, by feed_kind
     double blend_mm =
         -1;  // path tolerance of the corner at its end; negative: the planner's default
     double dwell_s = 0;
-    // Program::controls; `target` and `arc` are then commanded positions (tip_control.hpp).
+    // In Program::controls; `target` and `arc` are then commanded positions (tip_control.hpp).
     std::uint32_t control = kNoIndex;
     AxisPositions target{};
     Arc arc;
 };
 
-/// One thing wrong with a program. Prints as `part.ngc:12: G81: not supported (...)`.
+/// One fault of a program. Prints as `part.ngc:12: G81: not supported (...)`.
 struct ProgramFault {
     std::uint32_t line = 0;
     std::string word;

@@ -22,7 +22,7 @@ struct Follower {
 
     MotionSampler sampler;
     MotionSample now, next;  // commands at the beginning and the end of the tick
-    double keep;             // share of the distance to the command that a tick leaves
+    double keep;             // share of the distance to the command that remains after a tick
     bool has_more = false;
 };
 
@@ -35,10 +35,10 @@ void follow(const Follower& f, std::uint32_t axis, AxisMotion& at) noexcept {
     at.jerk = -at.acceleration / kDriveLagS;
 }
 
-/// Where the last tick ended, exactly; the polynomial of the tick only came close.
+/// Sets the exact position at the end of the last tick; the polynomial of the tick approximates it.
 void settle(const Follower& f, double from, std::uint32_t axis, AxisMotion& at) noexcept {
     const double rate = (f.next.position[axis] - f.now.position[axis]) / kMotionStepS;
-    const double steady = rate * kDriveLagS;  // behind the command at a steady speed
+    const double steady = rate * kDriveLagS;  // lag behind the command at a steady speed
     const double behind = f.now.position[axis] - from;
     at.position = f.next.position[axis] - steady - (behind - steady) * f.keep;
 }

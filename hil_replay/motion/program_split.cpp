@@ -17,7 +17,7 @@ Program split_by_axis(const Program& program, const Machine& machine) {
             split.moves.push_back(move);
             continue;
         }
-        const auto travel = [&](std::size_t axis) {  // a degree counts as a mm, as along the path
+        const auto travel = [&](std::size_t axis) {  // one degree counts as one mm, as for paths
             const double unit = machine.axes[axis].kind == AxisKind::rotary ? 180.0 / kPi : 1.0;
             return std::abs(move.target[axis] - position[axis]) * unit;
         };

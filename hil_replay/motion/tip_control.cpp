@@ -27,7 +27,8 @@ std::vector<std::uint32_t> axes_of(const Machine& machine, std::uint32_t body) {
     return axes;
 }
 
-/// A body on the spindle's side carries no part: it moves with what the first axis there moves.
+/// Whether the body is on the spindle's side, so that it carries no part: from the machine's frame
+/// outwards, the first moved body is the same for it and for the tool.
 bool is_on_tool_side(const Machine& machine, std::uint32_t body, std::uint32_t tool_body) {
     const auto first_moved = [&machine](std::uint32_t from) {
         std::uint32_t moved = kNoIndex;
@@ -40,7 +41,7 @@ bool is_on_tool_side(const Machine& machine, std::uint32_t body, std::uint32_t t
     return moved != kNoIndex && moved == first_moved(tool_body);
 }
 
-/// kNoIndex, and no fault: the part lies still.
+/// Finds the body of the part. kNoIndex without a fault: no axis moves the part.
 std::uint32_t find_part(const Machine& machine, const std::string& name, std::uint32_t tool_body,
                         std::string& fault) {
     std::uint32_t best = kNoIndex;
@@ -137,7 +138,7 @@ void TipControl::set_tool_offset(const AxisPositions& offset) {
 }
 
 AxisPositions TipControl::commanded_at(const AxisPositions& axes) const noexcept {
-    // What X Y Z add to a point on either side comes after the turns of the others, as in `move`.
+    // The contribution of X Y Z to a point on either side is added after all turns, as in `move`.
     const auto placed = [&axes](const Moved<double>& moved, const auto& tip_axes) {
         Vec3d point = moved.point;
         for (std::size_t k = 0; k < 3; ++k) {
@@ -146,7 +147,7 @@ AxisPositions TipControl::commanded_at(const AxisPositions& axes) const noexcept
         return point;
     };
     const Vec3d tip = placed(move(tool_, axes, tip_mm_), tip_axes_);
-    // The part's frame is rigid: four of its points say where any other one is.
+    // The part's frame is rigid: four of its points determine all others.
     const Vec3d origin = placed(move(part_, axes, nose_mm_), tip_axes_);
     Eigen::Matrix3d frame;
     for (int k = 0; k < 3; ++k) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tool centre point control: programmed positions of the tip in the part's frame to positions of
-// the axes, and back, by the machine's own tree of joints. Units: mm, rad. docs/reference/gcode.md.
+// Tool centre point control: converts programmed positions of the tip in the part's frame to axis
+// positions and back, with the machine's tree of joints. Units: mm, rad. docs/reference/gcode.md.
 #pragma once
 
 #include <array>
@@ -16,25 +16,25 @@ namespace axg {
 
 using AxisPositions = std::array<double, kAxesMax>;  // mm or rad, in Machine::axes order
 
-/// Below this X, Y and Z are taken for dependent: the worst direction then takes 20 times the way
-/// of the tip.
+/// Below this spread X, Y and Z count as dependent: in the worst direction the axes then move 20
+/// times as far as the tip.
 inline constexpr double kSpreadMin = 0.05;
 
-/// A commanded position has X Y Z in the part's frame and every other axis as it is. With all
-/// rotary axes at zero it is the position of the axes, as without control: the tool's offset is
-/// added to the programmed words, and the tip lies at commanded less offset from where the
-/// spindle's nose is when all axes are at zero.
+/// A commanded position contains X Y Z in the part's frame and the positions of all other axes.
+/// With all rotary axes at zero it equals the axis positions, as without control: it includes the
+/// tool offset, and the tip is displaced by commanded less offset from the spindle nose of the zero
+/// pose.
 class TipControl {
   public:
-    /// Which axes move the part, which the tool.
-    /// @param part  the body that carries the part; empty: the one that most axes move
+    /// Finds the axes that move the part and those that move the tool.
+    /// @param part  the body that carries the part; empty: the one that the most axes move
     /// @return      empty on success, else what the machine lacks
     [[nodiscard]] static std::string make(const Machine& machine, const std::string& part,
                                           TipControl& out);
 
     void set_tool_offset(const AxisPositions& offset);
 
-    /// Of one machine: whether the tool offset is the same.
+    /// Whether the tool offsets are equal. Precondition: both are for the same machine.
     friend bool operator==(const TipControl& a, const TipControl& b) noexcept {
         return a.offset_mm_ == b.offset_mm_;
     }
@@ -44,11 +44,11 @@ class TipControl {
     void axes_at(const std::array<Scalar, kAxesMax>& commanded,
                  std::array<Scalar, kAxesMax>& axes) const noexcept;
 
-    /// The commanded position of a machine whose axes stand there.
+    /// The commanded position that corresponds to these axis positions.
     [[nodiscard]] AxisPositions commanded_at(const AxisPositions& axes) const noexcept;
 
-    /// How well X Y Z move the tip in all directions at these rotary positions: 1 where they are
-    /// square to each other, 0 where two of them have become one direction.
+    /// How independently X Y Z move the tip at these rotary positions: 1 if their directions are
+    /// perpendicular to each other, 0 if they are linearly dependent.
     [[nodiscard]] double spread_at(const AxisPositions& commanded) const noexcept;
 
     [[nodiscard]] bool is_tip_axis(std::uint32_t axis) const noexcept {
@@ -56,7 +56,7 @@ class TipControl {
     }
 
   private:
-    /// One joint on the way from the machine's frame to the part or the tool.
+    /// One joint on the path from the machine's frame to the part or the tool.
     struct Link {
         std::uint32_t axis = 0;
         bool is_rotary = false;
@@ -147,7 +147,7 @@ void TipControl::axes_at(const std::array<Scalar, kAxesMax>& commanded,
                          std::array<Scalar, kAxesMax>& axes) const noexcept {
     const Moved<Scalar> part = move(part_, commanded, part_point(commanded));
     const Moved<Scalar> tool = move(tool_, commanded, detail::constant<Scalar>(tip_mm_));
-    // Both are the same point once X Y Z stand right: Cramer's rule.
+    // Solves for the X Y Z at which both points coincide, with Cramer's rule.
     std::array<Vec3<Scalar>, 3> c;
     for (std::size_t k = 0; k < 3; ++k) {
         c[k] = tool.columns[k] - part.columns[k];

@@ -39,7 +39,7 @@ ClearanceTracker::ClearanceTracker(const LoadedMachine& loaded, Engine engine, d
     }
 }
 
-/// How far any point of a moved, as b sees it. The way of a point is affine in its place, so no
+/// How far any point of a moved relative to b. The way of a point is affine in its place, so no
 /// point of a box goes farther than the corner that goes farthest.
 double ClearanceTracker::moved_mm(const Known& known, const Query& query) const noexcept {
     const Box& box = boxes_[query.mesh_a];
@@ -63,7 +63,7 @@ QueryResult ClearanceTracker::ask(Query query, double within_mm) {
     return result;
 }
 
-/// The bound of one pair, queried again where the old one says too little.
+/// The bound of one pair; queries the pair again if the old bound is too low.
 double ClearanceTracker::follow(Known& known, const Query& query) {
     double expected_mm = within_mm_ + kSpareMm;
     if (known.is_known && known.mesh_a == query.mesh_a && known.mesh_b == query.mesh_b) {
@@ -72,7 +72,7 @@ double ClearanceTracker::follow(Known& known, const Query& query) {
         if (bound >= within_mm_ || moved <= 0.5 * tracking_error_mm(std::max(0.0, bound))) {
             return std::max(0.0, bound);
         }
-        // Where it can be, the search begins near its end.
+        // Begin the search near the expected clearance, if possible.
         expected_mm = std::min(expected_mm, known.clearance_mm + moved + kRoundingMm);
     }
     QueryResult result = ask(query, expected_mm);
@@ -126,7 +126,7 @@ PageClearances ClearanceTracker::nearest(const AxisSnapshot& snapshot,
         if (is_known && result.clearance_mm >= least_mm) {
             continue;
         }
-        mm_[pair_queries_.pair[i]] = result.clearance_mm;  // not known: 0, and no triangles to show
+        mm_[pair_queries_.pair[i]] = result.clearance_mm;  // unknown: 0, and no triangles to show
         if (is_known) {
             least_mm = result.clearance_mm;
             out.pair = pair_queries_.pair[i];

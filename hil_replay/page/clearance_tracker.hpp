@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Clearances of a motion, sample by sample, at a fraction of the queries: a pair is queried again
 // only when its bodies have moved. Between two queries its clearance has shrunk by no more than
-// the farthest that any point moved, so what is left is a certified lower bound. mm.
+// the farthest that any point moved, so the rest is a certified lower bound. mm.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace axg {
 
-/// How far below the certified clearance a bound may lie: what a plot cannot show.
+/// How far a bound may be below the certified clearance: less than a plot can show.
 [[nodiscard]] constexpr double tracking_error_mm(double clearance_mm) noexcept {
     constexpr double kLeastMm = 0.02, kShare = 0.01;
     return clearance_mm * kShare > kLeastMm ? clearance_mm * kShare : kLeastMm;
@@ -42,7 +42,7 @@ class ClearanceTracker {
     struct Box {
         Vec3d low{}, high{};
     };
-    /// What a pair was like when it was queried last.
+    /// Surfaces, pose and clearance of a pair at its last query.
     struct Known {
         bool is_known = false;
         std::uint32_t mesh_a = 0, mesh_b = 0;

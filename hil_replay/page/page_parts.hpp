@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The files that a page is put together from: our own, which are installed with axguard, and the
-// libraries where Debian has them; and the machine as the page's scripts take it.
+// libraries where Debian has them; and the machine as the page's scripts read it.
 #pragma once
 
 #include <cstdio>
@@ -11,9 +11,9 @@
 
 namespace axg {
 
-/// Of hil_replay/page. Nothing: `messages` says why, and what to do.
+/// A file of hil_replay/page. nullopt: `messages` has the reason and the next step.
 [[nodiscard]] std::optional<std::string> own_part(const char* name, std::FILE* messages);
-/// Below /usr/share/javascript.
+/// A file below /usr/share/javascript.
 /// @param what_next  what to install
 [[nodiscard]] std::optional<std::string> library_part(const char* name, const char* what_next,
                                                       std::FILE* messages);

@@ -18,13 +18,13 @@ namespace {
 
 constexpr std::size_t kFileCharactersMax = 4096;
 
-/// As the terminal has it: what steers a terminal or turns the direction of writing is an escape.
+/// As on the terminal: control characters and those that turn the direction of writing as escapes.
 std::string json_text(const std::string& text, std::size_t length_max) {
     return nlohmann::json(escaped(text, length_max))
         .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-/// Of a JSON text within a script, where a '<' takes six bytes.
+/// Size of a JSON text within a script, in which a '<' has six bytes.
 std::size_t size_in_script_bytes(const std::string& text) {
     return text.size() + 5 * static_cast<std::size_t>(std::count(text.begin(), text.end(), '<'));
 }
@@ -67,7 +67,7 @@ std::string steps_text(const ProgramLines& lines, const std::vector<const Progra
     return out + "}}";
 }
 
-/// What the page can draw, in order.
+/// The instants that the page can draw, in order.
 std::vector<std::int64_t> drawn_times_us(const RunPage& page) {
     std::vector<std::int64_t> times_us;
     for (std::size_t row = 0; row < page.samples.rows(); ++row) {

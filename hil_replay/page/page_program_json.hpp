@@ -14,9 +14,9 @@ inline constexpr std::size_t kProgramBytesMax = 4U << 20U;
 inline constexpr std::size_t kBlockCharactersMax = 200;  // of a block, and about that much of it
 
 /// {"file","count","steps":{"time_s":[..],"line":[..]},"blocks":{"12":"G1 X1"}} as JSON text. Empty
-/// where the run has no lines. `count` is the program's number of steps. Where all of them do not
-/// fit, those are written that a row of the page or a stop is in: whatever the page draws has its
-/// true line, and a line that it draws nothing of is missing.
+/// where the run has no lines. `count` is the program's number of steps. If they do not all fit, it
+/// contains only the steps of the page's rows and stops: everything that the page draws has its
+/// true line, and lines that it does not draw are missing.
 [[nodiscard]] std::string program_data(const RunPage& page);
 
 }  // namespace axg

@@ -28,7 +28,7 @@ PageClearances PairClearances::at(const AxisSnapshot& snapshot) {
         if (is_known && result.clearance_mm >= within_mm_) {
             continue;
         }
-        mm_[pair_queries_.pair[i]] = result.clearance_mm;  // not known: 0, and no triangles to show
+        mm_[pair_queries_.pair[i]] = result.clearance_mm;  // unknown: 0, and no triangles to show
         if (is_known && result.clearance_mm < least_mm) {
             least_mm = result.clearance_mm;
             out.pair = pair_queries_.pair[i];

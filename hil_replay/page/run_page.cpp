@@ -22,7 +22,7 @@ constexpr const char* kInstall =
 constexpr std::array kScriptsOfPage = {"closest.js", "machine_view.js", "plots.js",
                                        "why.js",     "program.js",      "page.js"};
 
-/// As it may stand within <script>.
+/// Appends a text in <script>; escapes each "</script" in it.
 void append_script(std::string& page, const std::string& text) {
     std::string body = text;
     for (std::size_t at = 0; (at = body.find("</script", at)) != std::string::npos; at += 9) {

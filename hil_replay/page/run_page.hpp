@@ -19,7 +19,7 @@ namespace axg {
 inline constexpr std::size_t kPageRowsMax = 8192;
 inline constexpr double kPageWithinMm = 50.0;  // clearances are queried up to this
 
-/// What a page needs of a run, sample by sample.
+/// Records the data of a page of a run, sample by sample.
 class PageRecorder {
   public:
     /// `loaded` and what `engine` points to must outlive it.
@@ -51,14 +51,14 @@ struct RunPage {
     std::string title, words;  // the command's own summary
     // [{"time_us", "reason", may be: "axes": {"X_mm": ..}, "pairs": [{"pair", "triangles"}]}]
     std::string stops;
-    const ProgramLines* program = nullptr;  // null or empty: no line is known
+    const ProgramLines* program = nullptr;  // null or empty: no lines
 };
 
-/// Writes the page whole or not at all. False: `messages` says why, and what to install.
+/// Writes the page whole or not at all. False: `messages` has the reason, and what to install.
 [[nodiscard]] bool write_run_page(const std::string& path, const RunPage& page,
                                   std::FILE* messages);
 
-/// What `print` prints.
+/// Returns the text that `print` prints.
 [[nodiscard]] std::string printed_text(const std::function<void(std::FILE*)>& print);
 
 /// The data of the page alone, as JSON text without '<'.

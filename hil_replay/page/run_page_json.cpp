@@ -108,7 +108,7 @@ void append_meshes(std::span<const Mesh* const> meshes, std::string& text) {
     text += ']';
 }
 
-/// Column by column, to seven digits; null where there is nothing to say.
+/// Appends column by column, to seven digits; null for a value that is not finite.
 void append_samples(const PageSamples& samples, std::string& text) {
     fmt::format_to(std::back_inserter(text), "{{\"count\":{},\"stride\":{},\"rows\":{}",
                    samples.samples(), samples.stride(), samples.rows());
@@ -141,7 +141,7 @@ nlohmann::ordered_json times_json(const TimeHistogram* cycles) {
     return bars;
 }
 
-/// As it may stand within a script of a page: no name may close it.
+/// Escapes each '<' for a script of a page, so that no name can close the script.
 std::string safe_in_script(const std::string& text) {
     std::string safe;
     safe.reserve(text.size());

@@ -14,14 +14,14 @@ namespace {
 
 constexpr std::size_t kChordsInBox = 64;
 constexpr std::size_t kPlacesMax = 64;
-// Of equally near chords the first one: so much nearer a mm further on has to be. Where a path
-// turns round, the way back is two mm further for each that the positions are away from its end.
+// A chord further on has to be nearer by this for each mm of the path, so that the first of equally
+// near chords counts. At a reversal the way back is 2 mm further for each mm from the path's end.
 constexpr double kMmPerMmAhead = 0.3;
 constexpr double kLeastMm = 3 * kMatchWithinMm;  // less is a crossing
-constexpr double kDecidedMm = 200;  // so far along the best place, and the others are given up
+constexpr double kDecidedMm = 200;  // after this way along the best place, drop the others
 constexpr double kLateMm = 5;       // of the motion, in which the distance from a place is averaged
 constexpr double kAlikeMm = 0.02;   // places with no more between them fit alike
-constexpr double kWorseMm = 0.1;    // so much farther than the best one is no place
+constexpr double kWorseMm = 0.1;    // drop a place that is so much farther than the best one
 constexpr double kPoorMm = 0.1;     // a best place so far away: there may be a nearer one
 
 double distance_mm(std::span<const double> a, std::span<const double> b) {
@@ -77,7 +77,7 @@ PathMatch::Nearest PathMatch::nearest(std::size_t chord, double from_mm,
     return {std::sqrt(sum), path_.along_mm[chord] + share * length_mm};
 }
 
-/// To the turn in which an endless axis is nearest to a chord.
+/// Selects the turn in which an endless axis is nearest to a chord.
 void PathMatch::find_turns(std::size_t chord, std::span<double> turns) const {
     for (std::size_t i = 0; i < here_.size(); ++i) {
         const double middle =
@@ -87,7 +87,7 @@ void PathMatch::find_turns(std::size_t chord, std::span<double> turns) const {
     }
 }
 
-/// Whatever the turn of an endless axis.
+/// A lower bound of the distance to a box, for any turn of an endless axis.
 double PathMatch::away_from(const Box& box) const {
     double sum = 0;
     for (std::size_t i = 0; i < here_.size(); ++i) {
@@ -101,7 +101,7 @@ double PathMatch::away_from(const Box& box) const {
     return std::sqrt(sum);
 }
 
-/// False: the positions have left this place, which is as it was.
+/// False: the positions have left this place, which does not change.
 bool PathMatch::follow(Place& place, double step_mm) const {
     const double reach_mm = 2 * step_mm + kMatchWithinMm;
     Nearest best{.away_mm = std::numeric_limits<double>::max()};
@@ -134,8 +134,8 @@ void PathMatch::mark(Place& place, std::int64_t time_us) const {
     ++place.samples;
 }
 
-/// Wherever the path is near: the nearest point of each stretch of it. Behind the last place first,
-/// for programs run forward.
+/// Returns the nearest point of each stretch of the path that is near. Stretches behind the last
+/// place come first: programs run forward.
 std::vector<PathMatch::Place> PathMatch::places_here() const {
     std::vector<Place> places, before;
     Nearest best{.away_mm = std::numeric_limits<double>::max()};
@@ -191,7 +191,7 @@ void PathMatch::find_places() {
     }
 }
 
-/// While no place fits well: what was found so far is settled, and nearer ones are places too.
+/// While no place fits well: commits the lines so far, and adds nearer places.
 void PathMatch::find_nearer() {
     tried_ = here_;
     const double poor_mm = least_away();
@@ -214,8 +214,8 @@ void PathMatch::find_nearer() {
     std::move(nearer.begin(), nearer.end(), std::back_inserter(places_));
 }
 
-/// How far a place must have been followed to count, mm: where none was followed for a while, each
-/// one counts.
+/// How far a place must have been followed to count, mm; 0 if none was followed for kLeastMm, so
+/// that each one counts.
 double PathMatch::least_way() const noexcept {
     const bool has_known = std::any_of(places_.begin(), places_.end(), [](const Place& place) {
         return place.way_mm() >= kLeastMm;
@@ -232,7 +232,7 @@ double PathMatch::least_away() const noexcept {
     return least;
 }
 
-/// Of those that fit alike the first.
+/// The first of the places that fit alike.
 PathMatch::Place& PathMatch::best() noexcept {
     const double way_mm = least_way(), least = least_away();
     return *std::find_if(places_.begin(), places_.end(), [&](const Place& place) {
@@ -240,7 +240,7 @@ PathMatch::Place& PathMatch::best() noexcept {
     });
 }
 
-/// Two that have come to the same point are one; in time only the best is left.
+/// Merges places that reached the same point; drops all but the best one after kDecidedMm.
 void PathMatch::drop_worse() {
     const Place* const kept = &best();
     const double way_mm = least_way(), least = least_away(), at_mm = kept->along_mm;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where in a program's path recorded positions are. Several places are followed at once, for a path
-// may cross itself or be repeated: a place is left when the positions leave it, and what remains is
-// the place. docs/guide/report.md says what it cannot know.
+// Finds the place of recorded positions on a program's path. It follows several places at once,
+// because a path may cross itself or repeat: it drops a place that the positions leave, until one
+// remains. Limits: docs/guide/report.md.
 #pragma once
 
 #include <cstddef>
@@ -33,9 +33,9 @@ class PathMatch {
     [[nodiscard]] const std::vector<Mark>& finish();
 
     [[nodiscard]] std::uint64_t samples() const noexcept { return samples_; }
-    /// Of them those on the path.
+    /// The samples on the path.
     [[nodiscard]] std::uint64_t matched() const noexcept { return matched_; }
-    /// Somewhere another pass fitted as well as the first one, whose lines were taken.
+    /// Another pass fitted as well as the first one somewhere; the lines are those of the first.
     [[nodiscard]] bool is_repeated() const noexcept { return is_repeated_; }
 
   private:

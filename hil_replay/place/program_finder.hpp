@@ -20,15 +20,15 @@ class ProgramFinder {
     ProgramFinder(const GcodeArguments& arguments, const Machine& machine)
         : arguments_(arguments), machine_(machine) {}
 
-    /// What can be said before the first sample: the options and the program's file. False: stderr
-    /// has the fault.
+    /// Checks the options and the program's file, before the first sample. False: stderr has the
+    /// fault.
     [[nodiscard]] bool open();
-    /// In order of time. The first one is where the program starts, unless --start says otherwise.
+    /// In order of time. The program starts at the first one, unless --start is passed.
     void add(const AxisSnapshot& snapshot);
     /// After the last sample: without steps where nothing matched, or the program was rejected.
     /// stderr has how much matched.
     [[nodiscard]] ProgramLines finish();
-    /// It could not be used: stderr has why.
+    /// The program could not be used: stderr has the reason.
     [[nodiscard]] bool is_rejected() const noexcept { return is_read_ && !match_; }
 
   private:

@@ -14,7 +14,7 @@ namespace {
 constexpr double kChordMm = 0.5;
 constexpr double kQuarterTurn = kPi / 2;
 
-/// Where the path is not longer for it, a point is not added: nothing moves there.
+/// Adds a point, unless the path is not longer with it: then no axis moves.
 void add_point(const AxisPositions& position, std::uint32_t line, const MotionLimits& limits,
                ProgramPath& path) {
     double sum = 0;
@@ -35,7 +35,7 @@ void add_point(const AxisPositions& position, std::uint32_t line, const MotionLi
     path.lines.push_back(line);
 }
 
-/// Of a line of the axes.
+/// Number of chords of a straight line of the axes.
 double chords_of(const Move& move, const AxisPositions& from, const Machine& machine) {
     double chords = 1;
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {

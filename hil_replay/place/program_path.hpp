@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The path of a program as straight chords, each with its line: what recorded positions are matched
-// with. In path mm: one degree of a rotary axis counts as one mm.
+// The path of a program as straight chords, each with its line, to match recorded positions with.
+// In path mm: one degree of a rotary axis counts as one mm.
 #pragma once
 
 #include <cstddef>

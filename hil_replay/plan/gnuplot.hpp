@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws a script with gnuplot as a child process. Everything on a picture stands in its script and
-// tables, so that a user draws it again, or otherwise, without this program.
+// Draws a script with gnuplot as a child process. The script and its tables contain the whole
+// figure, so that a user can draw it again, or differently, without this program.
 #pragma once
 
 #include <string>
 
 namespace axg::chart {
 
-/// Of a picture, in pixels; the PNG has so many times as many.
+/// Size of a figure in pixels; a PNG has `png_scale` times as many in each direction.
 struct PictureSize {
     unsigned width = 1000, height = 640;
     unsigned png_scale = 1;
@@ -23,8 +23,8 @@ struct PictureSize {
 
 enum class Drawn { yes, no_gnuplot, failed };
 
-/// Runs gnuplot on NAME.gp in `folder`, once for each kind of picture. A picture takes its name
-/// when it is complete. What gnuplot complains of goes to stderr.
+/// Runs gnuplot on NAME.gp in `folder`, once for each file format. A file gets its name only when
+/// it is complete. Messages of gnuplot go to stderr.
 [[nodiscard]] Drawn draw(const std::string& folder, const std::string& name);
 
 inline constexpr const char* kNoGnuplot =

@@ -32,7 +32,7 @@ std::size_t contact_lost_of(const Machine& machine, const std::vector<PairVerdic
     return lost;
 }
 
-/// A trace ends early where the chain refuses it: what was proven behind that counts as lost.
+/// A trace ends early if the chain refuses it: certificates behind that sample count as lost.
 std::size_t certificates_lost_of(LostResult::Kind kind,
                                  const std::vector<CertificateVerdict>& whole,
                                  const std::vector<CertificateVerdict>& coarse,
@@ -74,7 +74,7 @@ void compare(const Machine& machine, const ModelScene& scene, const CandidateVer
     }
 }
 
-/// Triangles, keys and the most inflation of what engines get.
+/// Stores triangles, keys and the largest inflation of the surfaces for the engines.
 void describe(const LoadedMachine& loaded, ModelCandidate& model) {
     const Machine& machine = loaded.machine;
     const SurfaceList surfaces = surface_list(loaded);
@@ -137,7 +137,7 @@ bool confirm(const LoadedMachine& whole, const ModelScene& scene, bool on_gpu, M
     }
 }
 
-/// The coarsest that loses nothing; where it does not fit, the next coarser one that does.
+/// The coarsest model that loses nothing; if it does not fit, the next coarser one that does.
 bool choose_and_confirm(const LoadedMachine& whole, const ModelScene& scene, bool on_gpu,
                         ModelChoice& out, std::string& fault) {
     const std::size_t lossless = choose_model(out.models);
@@ -175,7 +175,7 @@ bool simplified_to(double simplify_mm, LoadedMachine& loaded, std::string& fault
     for (Tool& tool : loaded.machine.tools) {
         tool.mesh.simplify_mm = tool.mesh.file.empty() ? 0 : simplify_mm;
     }
-    // What was proven of other surfaces says nothing about these.
+    // Proofs about other surfaces are not valid for these.
     std::size_t own = 0;
     for (const PairSurface& surface : loaded.machine.pair_surfaces) {
         own = std::max(own, std::size_t{surface.surface} + 1);
@@ -205,7 +205,7 @@ std::size_t choose_model(const std::vector<ModelCandidate>& models) noexcept {
 Capacities capacities_for(const ModelWork& work, const Capacities& now) noexcept {
     Capacities out = now;
     if (work.over_capacity != 0) {
-        return now;  // nobody knows how much more was needed, and what is lost is lost already
+        return now;  // the need is unknown, and the results that did not fit count as lost
     }
     out.node_pairs = power_above(work.node_pairs, 64);
     out.triangle_pairs = power_above(work.triangle_pairs, 1024);
@@ -229,7 +229,7 @@ bool make_model_choice(const LoadedMachine& loaded, ModelScene scene, bool on_gp
         }
         describe(model, candidate);
         if (!out.models.empty() && candidate.triangles >= out.models.back().triangles) {
-            continue;  // nothing coarser was found: the model before does as well
+            continue;  // not coarser than the model before
         }
         if (!measure_model(model, scene, on_gpu, candidate.measured, fault)) {
             return false;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which model of a machine loses nothing that it needs: the whole surfaces and coarser ones
-// (config/mesh/simplify_meshes.hpp) measured side by side on this device, and the coarsest chosen
-// that stops nowhere where the whole ones do not. Source: docs/reference/plan.md.
+// Chooses the model of a machine: measures the whole surfaces and coarser ones
+// (config/mesh/simplify_meshes.hpp) on this device, and chooses the coarsest that stops nowhere
+// where the whole ones do not. Source: docs/reference/plan.md.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace axg {
 
-/// What each mesh may deviate, mm; 0: the whole surfaces.
+/// Largest deviation of each mesh, mm; 0: the whole surfaces.
 inline constexpr double kModelDetailsMm[] = {0, 0.05, 0.1, 0.2, 0.4};
 
 /// A result of the whole surfaces that a model does not give.
@@ -35,7 +35,7 @@ struct ModelCandidate {
     std::size_t contact_lost = 0, rest_lost = 0, trace_lost = 0;
     // The same one by one; of a certificate each pair that is open now and was not.
     std::vector<LostResult> lost_results;
-    // Of each approach to a stop: how much earlier it comes, mm of way.
+    // How much earlier the stop of each approach comes, mm of way.
     double earlier_mm_p50 = 0, earlier_mm_max = 0;
 
     [[nodiscard]] std::size_t lost() const noexcept {
@@ -44,7 +44,7 @@ struct ModelCandidate {
 };
 
 struct ModelChoice {
-    // Of kModelDetailsMm those that differ from the one before.
+    // For each of kModelDetailsMm whose model is coarser than the one before.
     std::vector<ModelCandidate> models;
     std::size_t chosen = 0;
     Capacities capacities;      // for the chosen one
@@ -55,7 +55,7 @@ struct ModelChoice {
 /// The slowest cycle that was seen, or constructed, us.
 [[nodiscard]] double slowest_us(const ModelMeasurement& measured) noexcept;
 
-/// What the engine may take of a cycle, us: firmware_if/setup/choose_engine.hpp.
+/// The engine's share of a cycle, us: firmware_if/setup/choose_engine.hpp.
 [[nodiscard]] double room_us(const Machine& machine) noexcept;
 
 /// The machine as its file has it, but for `simplify_mm` of every mesh.
@@ -66,17 +66,17 @@ struct ModelChoice {
 [[nodiscard]] bool make_model_choice(const LoadedMachine& loaded, ModelScene scene, bool on_gpu,
                                      ModelChoice& out, std::string& fault);
 
-/// Whether the slowest cycle of what was confirmed leaves the rest of the cycle its share.
+/// Whether the slowest cycle of the confirmed model is within room_us().
 [[nodiscard]] bool does_fit(const ModelChoice& choice, const Machine& machine) noexcept;
 
 /// A coarser model is worth its inflation where it has at most so many of the triangles.
 inline constexpr double kWorthShare = 0.7;
 
-/// The index of the coarsest that has lost nothing and is worth it; the first where none is.
+/// Index of the coarsest model that has lost nothing and is worth it; 0 if there is none.
 [[nodiscard]] std::size_t choose_model(const std::vector<ModelCandidate>& models) noexcept;
 
-/// Twice what the work came to, at least that of an engine's smallest lists, as powers of two; as
-/// they are where a list was full. What a launch on a GPU may use stays what it is.
+/// Twice the measured work, at least an engine's smallest lists, as powers of two; `now` if a list
+/// was full. The capacities of a launch on a GPU do not change.
 [[nodiscard]] Capacities capacities_for(const ModelWork& work, const Capacities& now) noexcept;
 
 }  // namespace axg

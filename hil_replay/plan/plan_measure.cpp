@@ -82,7 +82,7 @@ struct WatchedEngine {
         engine(queries, results);
         note(results);
     }
-    /// Of a first part asked alone nothing: where its share is too small the stage asks it again.
+    /// Ignores a first part queried alone: if its share is too small, the stage queries it again.
     void note(std::span<const QueryResult> results, std::span<const GroupWork> groups) noexcept {
         if (groups.size() != 1 || groups[0].share != kFirstPartShare) {
             note(results);
@@ -107,8 +107,8 @@ void keep_least(std::vector<double>& us, std::size_t place, double spent_us) {
     }
 }
 
-/// Contact mode at one position: whether all pairs are far. `each`: of each pair, appended, and
-/// the caller says which position it was.
+/// Contact mode at one position: whether all pairs are far. Appends the verdict of each
+/// pair to `each`; the caller sets the position.
 class ContactQuery {
   public:
     ContactQuery(const Machine& machine, const Engine& engine)
@@ -146,7 +146,7 @@ AxisSnapshot snapshot_between(const Approach& approach, double share) {
     return snapshot;
 }
 
-/// The share of the way at which a stop comes, up to 2^-kHalvings: clear at what is returned.
+/// The share of the way at which a stop comes, to 2^-kHalvings; clear at the returned share.
 double stop_share(const Approach& approach, ContactQuery& contact) {
     if (!contact.is_clear(snapshot_between(approach, 0))) {
         return 0;
@@ -199,7 +199,7 @@ CertificateVerdict verdict_of(const StopCycle& cycle, const AxisSnapshot& snapsh
     return out;
 }
 
-/// The certificate of a machine that has stood at each position long enough to be known to stand.
+/// Measures the certificate of a machine at rest at each position, for all samples of the history.
 void measure_rest(const Machine& machine, const ModelScene& scene, const Engine& engine,
                   const ContainmentTest& containment_test, StopCertificate& certificate,
                   ModelMeasurement& out) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What one model of a machine costs and says on this device: times of a cycle in contact mode and
-// of a certificate at rest, the work of a query, where the machine would stop. For
+// Measures one model of a machine on this device: times of a cycle in contact mode and of a
+// certificate at rest, the work of a query, where the machine would stop. For
 // `axguard check --plan`, which compares models (hil_replay/plan/model_choice.hpp). us, mm.
 #pragma once
 
@@ -15,7 +15,7 @@
 
 namespace axg {
 
-/// Of many cycles, each the least of some passes: what another program took away does not count.
+/// Times of many cycles, each the least of some passes: so delays by other programs do not count.
 struct CycleTimes {
     std::size_t cycles = 0;
     double p50_us = 0, p99_us = 0, max_us = 0;
@@ -28,10 +28,10 @@ struct Approach {
     double way_mm = 0;  // between the two
 };
 
-/// Where a machine is looked at; the same for every model of it.
+/// Positions and trace at which a machine is measured; the same for every model of it.
 struct ModelScene {
     std::uint32_t positions = 1000;  // spread over the travel
-    std::string trace;               // looked at too, in stoppable mode; empty: none
+    std::string trace;               // measured too, in stoppable mode; empty: none
     std::uint32_t passes = 3;
     std::uint32_t multiprocessors = 0;  // of the GPU, where it runs; 0: all
     std::vector<Approach> approaches;   // found with the whole surfaces
@@ -45,12 +45,12 @@ struct PairVerdict {
 struct CertificateVerdict {
     bool is_proven = false;
     std::vector<std::uint32_t> open{};  // Machine::pairs: those that were not proven
-    // Where the axes were, mm and rad, and of a trace the sample: where it was not proven.
+    // If not proven: positions of the axes, mm and rad, and the sample of a trace.
     std::vector<double> axes{};
     std::uint64_t sample = 0;
 };
 
-/// What was found far, or proven: one entry a query, in the order of the queries.
+/// Whether each query was far, or proven: one entry a query, in the order of the queries.
 struct CandidateVerdicts {
     std::vector<PairVerdict> contact;       // each pair at each position
     std::vector<CertificateVerdict> rest;   // each certificate at rest, all pairs
@@ -74,7 +74,7 @@ struct ModelMeasurement {
     std::string device;            // whose times these are
 };
 
-/// Positions spread over the travel between which contact mode changes its mind, found with
+/// Finds positions spread over the travel between which the result of contact mode changes, with
 /// `loaded` as it is.
 [[nodiscard]] std::vector<Approach> find_approaches(const LoadedMachine& loaded,
                                                     std::uint32_t positions);

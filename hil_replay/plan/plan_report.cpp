@@ -65,7 +65,7 @@ void print_lost(const CheckReport& report, const ModelChoice& choice) {
     }
 }
 
-/// What another model would cost, as one sentence.
+/// The cost of another model, as one sentence.
 std::string format_difference(const ModelCandidate& chosen, const ModelCandidate& other) {
     return fmt::format(
         "{}: p99 {:.1f} us instead of {:.1f}, slowest {:.1f} instead of {:.1f}, {:.1f} MiB instead "
@@ -171,7 +171,7 @@ std::string csv_of(const ModelChoice& choice) {
     return text;
 }
 
-/// Time of a cycle, and the room that stops give away, against the inflation.
+/// Plots the time of a cycle, and how much earlier stops come, against the inflation.
 std::string script_of(const CheckReport& report, const ModelChoice& choice,
                       const std::string& scene) {
     const std::string title = chart::quoted_for_gnuplot(escaped(report.loaded.machine.name) +

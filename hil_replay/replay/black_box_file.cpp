@@ -13,11 +13,11 @@
 namespace axg {
 namespace {
 
-constexpr std::size_t kFileBytesMax = std::size_t{1} << 30U;  // the ring of no machine comes near
+constexpr std::size_t kFileBytesMax = std::size_t{1} << 30U;  // far above the ring of any machine
 
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
-/// Up to `bytes_max` of it.
+/// Reads up to `bytes_max`.
 std::vector<std::uint8_t> read(std::FILE* file, std::size_t bytes_max) {
     std::vector<std::uint8_t> bytes;
     std::size_t got = 1;

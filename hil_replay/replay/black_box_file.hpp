@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A dump of the black box, record by record, up to its end or the first record that is damaged:
-// what is before that is good.
+// Reads a dump of the black box record by record, up to its end or the first damaged record. The
+// records before that are valid.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ class BlackBoxFile {
   public:
     /// @param name  for messages
     BlackBoxFile(std::string name, std::vector<std::uint8_t> bytes);
-    /// Reads the whole file; error() is the place of a failure.
+    /// Reads the whole file; error() describes a failure.
     [[nodiscard]] static BlackBoxFile open(const std::string& path);
 
     /// The next record. False: the end, or damage; error() is then `FILE:OFFSET: message`.

@@ -63,8 +63,8 @@ void BlackBoxReplay::on_record(const BlackBoxRecord& record) {
     std::visit([this](const auto& content) { on(content); }, record.entry.content);
 }
 
-/// Without the guard: chain and receiver stop once each until a reset; which of the two it was, the
-/// guard noted.
+/// Without the guard, chain and receiver each stop once until a reset; the guard's note states
+/// which of the two it was.
 ReplayedBlackBox BlackBoxReplay::result() {
     ReplayedBlackBox out = result_;
     const bool is_input = out.recorded && out.recorded->cause == GuardFault::input;
@@ -80,7 +80,7 @@ ReplayedBlackBox BlackBoxReplay::result() {
     return out;
 }
 
-/// With the guard that ran once more.
+/// Adds the frames and the stop of the guard that ran again.
 void BlackBoxReplay::compare_sent(ReplayedBlackBox& out) {
     guard_->end();
     out.sent = guard_->comparison();
@@ -232,10 +232,10 @@ void BlackBoxReplay::on(const LiveResult& live_result) {
                     .latched_us = queried->event.snapshot.latched_us};
     }
     compare(live_result, made);
-    if (!guard_) {  // it knows nothing of before, and follows what was ordered
+    if (!guard_) {  // the chain lacks earlier state: follow the recorded order
         chain_.set_cap_order(live_result.result.cap_order);
     }
-    // What a permit says besides; of a cap that is enforced, when it asks the proof about a raise.
+    // Advice of a permit; of an enforced cap, when it requests the proof of a raise.
     if (guard_ || machine_.guard.cap != CapPromise::none) {
         chain_.update_advisories();
     }
@@ -250,7 +250,7 @@ void BlackBoxReplay::compare(const LiveResult& recorded, const CycleResult& made
     if (!agrees && !runs_in_verdicts_ && !result_.first_different) {
         result_.first_different = recorded;
     }
-    if (recorded.result.is_stop && !is_stopped_) {  // what the guard made of it, its note says
+    if (recorded.result.is_stop && !is_stopped_) {  // its note states the guard's reaction
         stopping_us_ = recorded.latched_us;
         stop_since_us_ = recorded.arrived_us;
     }
@@ -258,7 +258,7 @@ void BlackBoxReplay::compare(const LiveResult& recorded, const CycleResult& made
 
 void BlackBoxReplay::on(const LiveNote& note) {
     if (note.kind == LiveNote::Kind::phase) {
-        if (is_whole_ && !guard_) {  // the first note of a process: what it begins with
+        if (is_whole_ && !guard_) {  // the first note of a process states its first phase
             guard_.emplace(machine_, options_, note.phase == GuardPhase::stopped, note.time_us);
         }
         is_stopped_ = note.phase == GuardPhase::stopped;

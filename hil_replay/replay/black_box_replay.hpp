@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A dump of the black box through the same receiver and chain, in the order in which the live
-// guard's two threads worked: its frames must give the snapshots that were recorded, and those the
-// verdicts. Where the dump goes back to the start of its process, the whole guard runs once more
-// and must send what was sent.
+// Replays a dump of the black box through the same receiver and chain, in the order in which the
+// live guard's two threads worked: its frames must give the recorded snapshots, and those the
+// recorded verdicts. If the dump begins at the start of its process, the whole guard runs again
+// and must send the recorded frames.
 #pragma once
 
 #include <array>
@@ -18,8 +18,8 @@
 
 namespace axg {
 
-/// A dump that does not go back to the start of the process has to learn first what the guard knew:
-/// until snapshots and verdicts agree again, so many of them are not compared.
+/// `run_in`: number not compared. A dump that begins after the start of its process first has to
+/// restore the guard's state, until snapshots and verdicts agree again.
 struct BlackBoxComparison {
     std::uint64_t same = 0, different = 0, run_in = 0;
 };
@@ -42,25 +42,25 @@ struct ReplayedBlackBox {
     TimeHistogram permit_time;
     std::int64_t stop_us = -1;  // the same to the stop that a verdict led to; negative: none
     std::optional<LiveResult> first_different;       // as recorded
-    std::optional<SentComparison> sent;              // none: it does not go back to the start
+    std::optional<SentComparison> sent;              // none: records from the start are missing
     std::optional<BlackBoxStop> recorded, replayed;  // the last stop
-    // Of the stop that was replayed, if by a verdict; without a stop, of the last cycle, if it
-    // withheld the permit.
+    // Cycle of the replayed stop, if by a verdict; without a stop, the last cycle, if it withheld
+    // the permit.
     std::optional<RefusedCycle> refused;
 };
 
-/// Where the guard did not run once more, a stop by verdict or input follows from the frames; one
-/// by time or by the wire does not.
+/// Whether the recorded stop follows from the dump. If the guard does not run again, a stop by
+/// verdict or input follows from the frames; one by time or by the wire does not.
 [[nodiscard]] bool can_be_reproduced(const ReplayedBlackBox& result) noexcept;
-/// Whether the recorded stop was found again, at the same sample.
+/// Whether the replay reproduced the recorded stop, at the same sample.
 [[nodiscard]] bool is_reproduced(const ReplayedBlackBox& result) noexcept;
 
 class BlackBoxReplay {
   public:
-    static constexpr std::uint32_t kRunInSnapshots = 20;  // more than the guard looks back
+    static constexpr std::uint32_t kRunInSnapshots = 20;  // more than the guard's history
 
     /// `chain` is new; it and `machine` must outlive this.
-    /// @param options  as the guard had them, without its black box
+    /// @param options  those of the guard, without its black box
     BlackBoxReplay(const Machine& machine, GuardChain& chain, const LiveOptions& options)
         : machine_(machine),
           options_(options),
@@ -68,7 +68,7 @@ class BlackBoxReplay {
           chain_(chain) {}
 
     void on_record(const BlackBoxRecord& record);
-    /// What came of it, after the last record.
+    /// Returns the comparison; call it after the last record.
     [[nodiscard]] ReplayedBlackBox result();
 
   private:
@@ -106,11 +106,11 @@ class BlackBoxReplay {
     ReplayedBlackBox result_;
     std::int64_t turn_us_ = 0;
     std::optional<ReceiverEvent> made_;  // by the last frame: a snapshot, or a look-ahead path
-    std::deque<Heard> waiting_;          // for the engine's thread to take them
+    std::deque<Heard> waiting_;          // for the engine's thread
     std::optional<BlackBoxStop> verdict_, input_;  // the last stop of either kind that was found
     std::optional<RefusedCycle> stopped_, withheld_;
     std::array<std::int64_t, kSyncCounterMax + 1> arrived_us_{};  // by SYNC counter; 0: none
-    std::int64_t stop_since_us_ = 0;  // the sample whose verdict was a stop; 0: it was heard
+    std::int64_t stop_since_us_ = 0;  // the sample whose verdict was a stop; 0: echoed
     ReceiverFault recorded_fault_ = ReceiverFault::none;
     std::int64_t stopping_us_ = 0;  // the sample of the last verdict that was a stop
     bool is_stopped_ = false;       // as the guard noted it

@@ -17,7 +17,7 @@ Corners corners_of(const Triangle& triangle) noexcept {
     return std::bit_cast<Corners>(triangle);
 }
 
-/// [part] the triangle of the whole with the same corners.
+/// Returns for each triangle of `part` the one of `whole` with the same corners; kNoIndex: none.
 std::vector<std::uint32_t> places_in(const Mesh& part, const Mesh& whole) {
     std::map<Corners, std::uint32_t> places;
     for (std::uint32_t i = 0; i < whole.triangles.size(); ++i) {

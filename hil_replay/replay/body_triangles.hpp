@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an engine calls a triangle, and what a person does: reports and pages number the triangles
-// of bodies and tools, an engine those of the surface that it was queried about, and a pair may
-// have one of its own (Machine::pair_surfaces).
+// Converts an engine's triangle numbers to those of reports. Reports and pages number the triangles
+// of bodies and tools; an engine numbers those of the queried surface, which may belong to one pair
+// (Machine::pair_surfaces).
 #pragma once
 
 #include <cstdint>
@@ -14,18 +14,18 @@ namespace axg {
 
 class BodyTriangles {
   public:
-    /// What it needs of `loaded` it copies.
+    /// Copies the required parts of `loaded`.
     explicit BodyTriangles(const LoadedMachine& loaded);
 
-    /// The same two triangles as the two bodies' own surfaces have them: as the engine was given
-    /// those, simplified where they are. kNoIndex: the body has none such.
+    /// Returns the numbers of the two triangles in the bodies' own surfaces as the engine received
+    /// them, simplified or not. kNoIndex: the body's surface has no such triangle.
     /// @param query  of make_contact_queries(QueryScope::whole)
     [[nodiscard]] TriangleIds of(const Query& query, TriangleIds found) const noexcept;
 
   private:
     [[nodiscard]] std::uint32_t of(std::uint32_t mesh, std::uint32_t triangle) const noexcept;
 
-    std::uint32_t first_;                              // of the engine's surfaces that pairs have
+    std::uint32_t first_;                              // first pair-specific surface of the engine
     std::vector<std::vector<std::uint32_t>> in_body_;  // [those surfaces][triangles]
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ways out of a place (core/guard/escape.hpp) for reports: found, and in words.
+// Finds the ways out of a position (core/guard/escape.hpp) and formats them for reports.
 #pragma once
 
 #include <string>
@@ -13,16 +13,16 @@
 
 namespace axg {
 
-/// As if the machine stood where the snapshot has it. Nothing is clear where memory ran out.
+/// Finds the ways out for a machine at rest at the snapshot. Default result if memory ran out.
 [[nodiscard]] Escapes find_escapes(const LoadedMachine& loaded, const Engine& engine,
                                    const ContainmentTest& containment_test,
                                    const AxisSnapshot& snapshot);
 
-/// What one jog moves, mm or degrees.
+/// Distance of one jog, mm or degrees.
 [[nodiscard]] double step_in_file_units(const Machine& machine, const EscapeJog& jog);
 
 /// "jog Z+ (1 mm: clearance at least 1.3000 mm)", the best first; or why there is none. In brief
-/// the others without their figures. Empty: nothing is near.
+/// only the first has its figures. Empty: no pair is near.
 [[nodiscard]] std::string format_escapes(const Machine& machine, const Escapes& escapes,
                                          Detail detail);
 

@@ -26,13 +26,13 @@ double speed_of(const Axis& axis, double from, double to, double seconds) {
     return seconds > 0 ? way / seconds * shown_unit(axis) : kNothing;
 }
 
-/// `b` came after `a`. Each row has its own clearance at kLeastColumn.
+/// Merges row `b` into the earlier row `a`. Each row has its own clearance at kLeastColumn.
 void merge(std::span<const PageColumn> columns, std::span<double> a, std::span<const double> b) {
     const bool takes_b = b[kLeastColumn] < a[kLeastColumn];
     for (std::size_t i = 0; i < columns.size(); ++i) {
         switch (columns[i].keep) {
             case Keep::least:
-                a[i] = std::fmin(a[i], b[i]);  // of a number and none: the number
+                a[i] = std::fmin(a[i], b[i]);  // of a number and NaN: the number
                 break;
             case Keep::most:
                 a[i] = std::fmax(a[i], b[i]);
@@ -110,7 +110,7 @@ void PageSamples::add(const AxisSnapshot& snapshot, const PageCycle& cycle,
     note_detail(cycle.has_permit);
 }
 
-/// The sample that was just put: into the ring, and into the detail that is under way.
+/// Stores the newest sample in the detail under way, or else in the ring.
 void PageSamples::note_detail(bool has_permit) {
     const std::uint64_t sample = samples_ - 1;
     const bool is_lost = had_permit_ && !has_permit;
@@ -130,7 +130,7 @@ void PageSamples::note_detail(bool has_permit) {
     }
 }
 
-/// The newest samples of the ring, as far as no detail has them.
+/// Adds a detail with the newest `before` samples of the ring that no other detail contains.
 void PageSamples::keep_recent(std::uint64_t before) {
     const std::size_t width = columns_.size();
     Detail detail{.first = std::max(detail_ends_, samples_ - std::min(samples_, before)),
@@ -220,7 +220,7 @@ void PageSamples::put(std::span<const double> values) {
     }
     if (rows() == rows_max_) {
         halve();
-        // As many samples as there is room for fill the rows evenly, so this one begins a row.
+        // rows_max_ is even, so the samples fill the merged rows and this one begins a new row.
     }
     values_.insert(values_.end(), values.begin(), values.end());
 }

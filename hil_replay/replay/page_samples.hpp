@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a page shows of a run, in bounded memory: however many samples there were, at most a stated
-// number of rows, each of equally many samples in a row, with the least and the most of every
-// column kept; and each sample about a loss of the permit, in a row of its own. mm, degrees, s, us.
+// Samples of a run for a page, in bounded memory: at most a stated number of rows, each of equally
+// many consecutive samples, with the least and the most of every column; and a row for each sample
+// around a loss of the permit. mm, degrees, s, us.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +21,7 @@
 
 namespace axg {
 
-/// What becomes of the values of a column when samples share a row.
+/// How samples that share a row merge their values of a column.
 enum class Keep : std::uint8_t { least, most, shown };  // shown: of the sample of least clearance
 
 struct PageColumn {
@@ -37,22 +37,22 @@ struct PageClearances {
 };
 inline constexpr double kNotNear = std::numeric_limits<double>::infinity();
 
-/// What a cycle came to.
+/// Result of a cycle.
 struct PageCycle {
     bool has_permit = false;
     std::int64_t spent_ns = 0;  // 0: not measured
     ClearanceLevel clearance_level = ClearanceLevel::clear;
     // Periods for which the permit is proven, 0: there is none; and the cap that it orders, 1/250
-    // of rapid. Empty: not known, or no cap is ordered.
+    // of rapid. Empty: unknown, or no cap is ordered.
     std::optional<std::uint8_t> valid_periods{};
     std::optional<std::uint8_t> cap{};
 };
 
-/// With what the permit of this result says.
+/// Includes the validity and the cap of this result's permit.
 [[nodiscard]] PageCycle page_cycle(bool has_permit, const CycleResult& result);
 
-// Of the first losses of the permit, and of the end of the run, this many samples before and after
-// have rows of their own.
+// Around the first losses of the permit, and the end of the run, this many samples before and after
+// have one row each.
 inline constexpr std::size_t kDetailBefore = 256, kDetailAfter = 64, kDetailsMax = 16;
 
 class PageSamples {
@@ -60,14 +60,14 @@ class PageSamples {
     /// @param rows_max  even; detailed rows not counted
     PageSamples(const Machine& machine, std::size_t rows_max);
 
-    /// In order of time. `machine` must still be there.
+    /// Call in order of time. `machine` must still exist.
     void add(const AxisSnapshot& snapshot, const PageCycle& cycle,
              const PageClearances& clearances);
-    /// After the last sample: the detailed rows are put in their places, by time. A row that
-    /// they replace whole is left out.
+    /// Call after the last sample: inserts the detailed rows by time, and removes each row that
+    /// they replace completely.
     void finish();
     /// Queries each row's shown sample again: the clearance, the pair and its triangles.
-    /// @param nearest  takes that sample and the row's clearances, [pairs]
+    /// @param nearest  receives that sample and the row's clearances, [pairs]
     void settle(
         const std::function<PageClearances(const AxisSnapshot&, std::span<const double>)>& nearest);
 
@@ -75,7 +75,7 @@ class PageSamples {
     [[nodiscard]] std::size_t rows() const noexcept {
         return columns_.empty() ? 0 : values_.size() / columns_.size();
     }
-    /// [columns] of one row. Not a number: nothing to say.
+    /// [columns] of one row. Not a number: no value.
     [[nodiscard]] std::span<const double> row(std::size_t i) const noexcept {
         return {values_.data() + i * columns_.size(), columns_.size()};
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a report of a replay adds about a stop: the pairs near it, queried again in full, and the
+// Data on a stop that a report of a replay adds: the near pairs, queried again in full, and the
 // ways out.
 #pragma once
 
@@ -23,7 +23,7 @@ struct PairAtStop {
     bool is_cut_short = false;                // a list was full: at least so many
     std::vector<TriangleIds> triangles;       // the first few, lowest indices first
     double clearance_mm = 0;                  // kStopWithinMm: nothing nearer
-    TriangleIds nearest{kNoIndex, kNoIndex};  // of least clearance, where that is known
+    TriangleIds nearest{kNoIndex, kNoIndex};  // of least clearance, if available
     double margin_mm = 0;
     Containment containment = Containment::not_proven;
 };
@@ -35,10 +35,10 @@ struct PairAtStop {
 [[nodiscard]] std::pair<std::string, std::string> nested_names(const Machine& machine,
                                                                const PairAtStop& pair);
 
-/// Were the machine to stand where it was then.
+/// Returns the ways out of the position at the stop.
 [[nodiscard]] Escapes escapes_at(const ReplayReport& report, const StopEvent& stop);
 
-/// Of these stops, pairs and ways out are reported.
+/// Whether reports list pairs and ways out for stops of this reason.
 [[nodiscard]] bool is_about_distance(StopReason reason);
 
 }  // namespace axg

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A cycle's plan as results have it.
+// A cycle's plan as JSON, for results.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kSecondsMax = 86400;
 
-/// Where a word's number goes: a share, or an instant.
+/// Field that a word sets: a share, or an instant.
 struct Place {
     std::string_view name;
     double BusFaults::*share = nullptr;

@@ -67,7 +67,7 @@ void RecordedGuard::on_turn(std::int64_t time_us) {
     turn_us_ = time_us;
 }
 
-// A turn takes results, then reads, then sends: a record of an earlier kind begins the next one.
+// A turn gets results, then reads, then sends: a record of an earlier kind begins the next one.
 void RecordedGuard::on(const RecordedWire::Reading& reading, std::int64_t time_us) {
     if (wire_.has_sent()) {
         run();
@@ -86,11 +86,11 @@ void RecordedGuard::on(const LiveResult& live_result, std::int64_t time_us) {
         run();
     }
     on_turn(time_us);
-    // The guard takes them all in this turn.
+    // The guard removes all results in this turn.
     [[maybe_unused]] const bool is_pushed = queues_.results.push(live_result);
 }
 
-/// What it sends is recorded with the next turn, so it waits for that.
+/// Defers the call to the next turn, because the frames it sends are recorded with that turn.
 void RecordedGuard::on(const LiveCall& call, std::int64_t time_us) {
     run();
     calls_.push_back({call, time_us});
@@ -131,7 +131,7 @@ void RecordedGuard::run() {
     }
     wire_.end_turn();
     LiveQuery query;
-    while (queues_.queries.pop(query)) {  // answered by what was recorded
+    while (queues_.queries.pop(query)) {  // the recorded results replace theirs
     }
     LiveNote note;
     while (queues_.notes.pop(note)) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The deployed guard once more, turn by turn at the times of a dump that goes back to the start of
-// its process: it reads what was read, hears its engine when it was heard, and must send the same
-// frames.
+// Runs the deployed guard again, turn by turn at the times of a dump that begins at the start of
+// its process: it reads the recorded frames, receives its engine's results at the recorded times,
+// and must send the same frames.
 #pragma once
 
 #include <cstdint>
@@ -13,13 +13,13 @@
 
 namespace axg {
 
-/// Frames that were sent; `different` counts those left out and those made up as well.
+/// Frames that were sent; `different` also counts missing and additional ones.
 struct SentComparison {
     std::uint64_t same = 0, different = 0;
-    std::optional<SentFrame> first_different;  // as recorded; as made where nothing was recorded
+    std::optional<SentFrame> first_different;  // as recorded; an additional one as sent
 };
 
-/// What was read in the turn, and what the wire said to each frame that was sent in it.
+/// The frames that were read in the turn, and the wire's status of each frame that was sent in it.
 class RecordedWire final : public CanTransport {
   public:
     struct Reading {
@@ -31,7 +31,7 @@ class RecordedWire final : public CanTransport {
     void add(const SentFrame& sent) { sent_.push_back(sent); }
     [[nodiscard]] bool has_sent() const noexcept { return !sent_.empty(); }
     [[nodiscard]] bool has_readings() const noexcept { return !readings_.empty(); }
-    /// What was recorded and was not made is different.
+    /// Counts the recorded frames that were not sent as different.
     void end_turn() noexcept;
     [[nodiscard]] const SentComparison& comparison() const noexcept { return comparison_; }
 
@@ -49,12 +49,12 @@ class RecordedWire final : public CanTransport {
 
 class RecordedGuard {
   public:
-    /// @param now_us      when the process made its guard
+    /// @param now_us      when the process constructed its guard
     /// @param is_latched  by an earlier run
     RecordedGuard(const Machine& machine, const LiveOptions& options, bool is_latched,
                   std::int64_t now_us);
 
-    // In the order of the records. A result has the dates that were recorded.
+    // Call in the order of the records. A result contains the recorded times.
     void on(const RecordedWire::Reading& reading, std::int64_t time_us);
     void on(const SentFrame& sent, std::int64_t time_us);
     void on(const LiveResult& live_result, std::int64_t time_us);

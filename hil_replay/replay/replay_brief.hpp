@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A replay on one screen: what was proven, how long a cycle took, and what no reader may miss. Rows
-// that say nothing about the run are in the full report only.
+// Prints a replay on one screen: the proven samples, the time of a cycle, and everything that no
+// reader may miss. Rows without information on the run are in the full report only.
 #pragma once
 
 #include <cstdint>
@@ -23,12 +23,12 @@ namespace axg {
 /// "deadline 500 us: 0 of 43840 cycles late", and whether late ones are judged.
 [[nodiscard]] std::string deadline_text(const ReplayReport& report);
 
-/// The figures of the run: a line each, and one for each thing that is not as declared.
+/// Prints a line for each figure of the run, and one for each deviation from a declared value.
 void print_summary(const ReplayReport& report, std::FILE* words);
 
-/// A line of a pair near a stop: contact, nesting or clearance.
+/// Prints a line on a pair near a stop: contact, nesting or clearance.
 void print_pair(const Machine& machine, const PairAtStop& pair, Detail detail, std::FILE* words);
-/// Of a stop: pairs in contact, or the nearest where no sentence states a distance.
+/// Prints a stop's pairs in contact, or the nearest one if no sentence states a distance.
 /// @param has_why  its sentences are printed
 /// @return  whether the pair of the stop touches
 bool print_brief_pairs(const ReplayReport& report, const StopEvent& stop, bool has_why,

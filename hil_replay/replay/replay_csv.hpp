@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One line a cycle of a replay: sample, axes, permit, and the certified clearance of every pair. No
-// times of this machine: two runs give equal bytes.
+// Writes one line a cycle of a replay: sample, axes, permit, and the certified clearance of every
+// pair. The file contains no times of this computer: two runs give equal bytes.
 #pragma once
 
 #include <cstdio>
@@ -16,7 +16,7 @@ class ReplayCsv {
   public:
     ReplayCsv(const Machine& machine, std::string path, bool is_stoppable);
 
-    /// @param clearances_mm  [pairs], kNotNear where there is nothing to say (PairClearances)
+    /// @param clearances_mm  [pairs], kNotNear if there is no clearance (PairClearances)
     void on_cycle(const ReplayCycle& cycle, std::span<const double> clearances_mm);
     /// False: the reason is in `messages`; no file of that name was written.
     [[nodiscard]] bool finish(std::FILE* messages);

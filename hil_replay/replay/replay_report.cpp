@@ -75,7 +75,7 @@ void print_stop(const ReplayReport& report, const StopEvent& stop, const char* t
             print_pair(machine, pair, detail, words);
         }
     } else if (print_brief_pairs(report, stop, has_why, words)) {
-        reason.clear();  // a contact needs no further one
+        reason.clear();  // a contact needs no further reason
     }
     fmt::print(words, "{}", reason);
     const std::string escapes = format_escapes(machine, escapes_at(report, stop), detail);
@@ -128,7 +128,7 @@ void print_times(const ReplayReport& report, std::FILE* words) {
     fmt::print(words, "   sum of averages {:.3f}\n", sum_ns * 1e-3);
 }
 
-/// Of whole batches: a pair has no time of its own.
+/// For whole batches, in which a pair has no time of its own.
 void print_not_proven(const ReplayReport& report, std::FILE* words) {
     const Machine& machine = report.loaded.machine;
     fmt::print(words, "samples not proven\n");
@@ -217,7 +217,7 @@ void print_faults(const ReplayReport& report, std::FILE* words) {
     }
 }
 
-/// What is said of a trace without a stop.
+/// Prints the end of a trace without a stop.
 void print_end(const ReplayReport& report, Detail detail, std::FILE* words) {
     const ReplayRun& run = report.run;
     if (!run.armed_us()) {
@@ -240,7 +240,7 @@ void print_end(const ReplayReport& report, Detail detail, std::FILE* words) {
     }
 }
 
-/// Last, where nobody passes it over.
+/// Printed last, so that no reader misses it.
 void print_cut(const TraceEnd& end, std::FILE* words) {
     if (!end.fault.empty()) {
         fmt::print(words, "\nTHE TRACE IS TRUNCATED: the rest is not proven\n  {}\n", end.fault);
@@ -259,7 +259,7 @@ void print_tables(const ReplayReport& report, std::FILE* words) {
     print_deadline(report, words);
 }
 
-/// How much was read, and what is wrong with it.
+/// Prints how much was read, and its faults.
 void print_input(const ReplayReport& report, std::FILE* words) {
     const ReplayRun& run = report.run;
     fmt::print(words, "{}: {} frames, {} samples, {} lost, mode {}, engine {} {}\n", report.trace,

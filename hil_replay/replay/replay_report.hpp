@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a replay came to: in brief, or with the table of times as the seed paper prints it; the stop
-// in words; and the same as JSON.
+// Reports a replay: in brief, or with the table of times as the seed paper prints it; the stop as
+// text; and the same as JSON.
 #pragma once
 
 #include <cstdio>
@@ -29,11 +29,11 @@ struct ReplayReport {
     bool is_realtime = false;
     TraceEnd end{};
     ProgramLines lines{};  // empty: no table of them
-    TracePeriod period{};  // the declared one, and what the trace shows of it
-    // Of the run's stops that are about a pair, and of the first sample withheld.
+    TracePeriod period{};  // the declared one, and the one that the trace shows
+    // Explains the run's stops that concern a pair, and the first sample withheld.
     std::map<const StopEvent*, StopWhy> whys{};
 };
-/// Fills in `whys`: before anything is printed. Cost: as why_of, once a stop.
+/// Fills in `whys`; call before printing. Cost: one why_of a stop.
 void explain_stops(ReplayReport& report);
 
 void print_replay(const ReplayReport& report, Detail detail, std::FILE* words);
@@ -43,7 +43,7 @@ struct ReplayDocument {
     std::string stops;  // of the document, in one line
 };
 [[nodiscard]] ReplayDocument describe_replay(const ReplayReport& report);
-/// The document where no frame of the trace could be read.
+/// Returns the document for a trace of which no frame could be read.
 [[nodiscard]] std::string describe_unread(const std::string& trace, const std::string& fault);
 
 }  // namespace axg

@@ -30,7 +30,8 @@ Json axes_json(const Machine& machine, const AxisSnapshot& snapshot) {
     return axes;
 }
 
-/// Of the machine file, against which a live guard measures; the replay takes the trace's own.
+/// Period of the machine file, against which a live guard measures, and that of the trace, which
+/// the replay uses.
 Json period_json(const ReplayReport& report) {
     const TracePeriod& period = report.period;
     Json out{{"declared_us", period.declared_us},
@@ -144,7 +145,7 @@ Json faults_json(const ReceiverCounters& counters) {
     return out;
 }
 
-/// By name; with times where each pair was asked on its own.
+/// By name; with times if each pair was queried separately.
 Json pairs_json(const ReplayReport& report) {
     const ReplayRun& run = report.run;
     const Machine& machine = report.loaded.machine;
@@ -178,7 +179,7 @@ Json slowest_json(const ReplayReport& report) {
     return out;
 }
 
-/// Whether the trace was read as it should be; what not.
+/// Adds whether the trace was read without fault, and which lines were skipped.
 void add_end(const TraceEnd& end, Json& out) {
     out["valid"] = end.fault.empty();
     if (!end.fault.empty()) {
@@ -243,7 +244,7 @@ ReplayDocument describe_replay(const ReplayReport& report) {
         stops.push_back(stop_json(report, stop));
     }
     out["stop_count"] = run.stop_count();
-    Json shown = out["stops"];  // on a page, which has the sentences too
+    Json shown = out["stops"];  // for a page, which also contains the sentences
     const auto add_sentences = [&](const StopEvent& stop, Json& on_page) {
         if (const auto why = report.whys.find(&stop); why != report.whys.end()) {
             on_page["why"] = page_why_json(machine, why->second);

@@ -34,7 +34,7 @@ std::uint32_t CountTable::at_share(double share) const noexcept {
 
 namespace {
 
-/// Of a board that says so, or by what its axes did last.
+/// Whether the board reports motion, or the axes moved between the last two cycles.
 bool is_in_motion(const Machine& machine, const AxisSnapshot& before, const AxisSnapshot& newest) {
     if (newest.mode == kModeMoving || newest.mode == kModeJog) {
         return true;
@@ -112,7 +112,7 @@ bool ReplayRun::on_frame(const CanFrame& frame) {
         return false;
     }
     note_hash(frame);
-    if (is_read) {  // others tell the time alone
+    if (is_read) {  // other frames only advance the time
         guard_->arrive({.frame = frame, .is_own = is_guards_sync});
         note_guard();
     }
@@ -126,9 +126,9 @@ void ReplayRun::note_hash(const CanFrame& frame) {
     }
 }
 
-/// Of the guard in the trace, not of another sender: by the direction that the log states of each
-/// frame; where it states none of the guard's, any while there is one. Before arming nothing is
-/// permitted that a stop could end.
+/// Whether the guard in the trace sent this stop frame: by the direction that the log states. If
+/// the log marks no frame of the guard, any stop frame counts while the trace has a guard. Before
+/// arming any counts: no motion is permitted that a stop could end.
 bool ReplayRun::is_guards_stop(const CanFrame& frame) const noexcept {
     if (!is_stop_frame(machine_.can, frame)) {
         return false;
@@ -137,7 +137,7 @@ bool ReplayRun::is_guards_stop(const CanFrame& frame) const noexcept {
     return !is_armed || frame.sent_by_host || (guard_frames_ != 0 && !marks_guard_);
 }
 
-/// Timer by timer, so that a stop is seen when it comes.
+/// Runs timer by timer, so that a stop is noted at its time.
 void ReplayRun::run_before(std::int64_t until_us) {
     while (guard_->next_due_us() < std::min(until_us, ends_us_)) {
         guard_->run_before(guard_->next_due_us() + 1);
@@ -150,7 +150,7 @@ void ReplayRun::finish() {
         return;
     }
     if (ends_us_ == INT64_MAX) {
-        guard_->hear_result();  // in real time that of the last sample is still to come
+        guard_->hear_result();  // in real time the last result is still pending
         note_guard();
     }
     if (ends_us_ != INT64_MAX) {
@@ -158,10 +158,10 @@ void ReplayRun::finish() {
     } else if (!was_stopped_ && newest_.axis_count != 0 &&
                is_in_motion(machine_, before_, newest_)) {
         input_at_end_ = input();
-        is_over_ = true;  // the trace is: what follows is not its own
+        is_over_ = true;  // the trace has ended: ignore later cycles
         end_in_motion_ = {.cause = GuardFault::none, .time_us = last_us_, .snapshot = newest_};
         if (guard_->was_armed()) {
-            while (!guard_->is_stopped()) {  // it hears nothing any more
+            while (!guard_->is_stopped()) {  // no further frame arrives
                 guard_->run_before(guard_->next_due_us() + 1);
             }
             end_in_motion_.cause = guard_->guard().guard().cause;
@@ -209,7 +209,7 @@ void ReplayRun::on_cycle(const TimedCycle& cycle) {
     }
 }
 
-/// What the guard did in the last turns.
+/// Notes the guard's phase after the last turns.
 void ReplayRun::note_guard() {
     const GuardPhase phase = guard_->guard().guard().phase;
     was_ready_ = was_ready_ || phase == GuardPhase::ready || phase == GuardPhase::armed;
@@ -229,7 +229,7 @@ void ReplayRun::note_guard() {
     }
 }
 
-/// Each is an event of its own, not a state that lasts.
+/// Notes a fault as an event of its own, not as part of an episode.
 void ReplayRun::note_fault(GuardFault cause, StopReason reason) {
     in_episode_ = false;
     note_stop({.cause = cause,
@@ -241,7 +241,8 @@ void ReplayRun::note_fault(GuardFault cause, StopReason reason) {
     in_episode_ = false;
 }
 
-/// As if a person had reset at once, but for a verdict: its episode lasts as long as its reason.
+/// Resets at once, as by a person, except after a verdict: its episode lasts as long as its reason,
+/// unless the input fails.
 void ReplayRun::keep_going() {
     const bool is_blind = guard_->guard().receiver().state() == ReceiverState::invalid &&
                           guard_->guard().receiver().stop_cause() != ReceiverFault::none;
@@ -334,7 +335,7 @@ void ReplayRun::note_time(std::int64_t spent_ns, const AxisSnapshot& snapshot) {
         return spent_ns > slow.spent_ns;
     });
     if (at == slowest_.end()) {
-        return;  // eight slower ones are known
+        return;  // eight slower ones are stored
     }
     slow_count_ = std::min(slow_count_ + 1, kSlowCyclesKept);
     std::move_backward(at, slowest_.begin() + static_cast<std::ptrdiff_t>(slow_count_) - 1,
@@ -343,7 +344,7 @@ void ReplayRun::note_time(std::int64_t spent_ns, const AxisSnapshot& snapshot) {
 }
 
 void ReplayRun::note_verdict(const CycleResult& result) {
-    // Not proven before arming: it was withheld, and nothing was withdrawn.
+    // A missing proof before arming only withholds the permit: no stop.
     if (result.reason == StopReason::none || !guard_->is_stopped()) {
         in_episode_ = false;
         return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recorded trace through the deployed guard, with the time of every cycle and a list of the
+// Runs a recorded trace through the deployed guard, with the time of every cycle and a list of the
 // stops. The guard's timers fire between the lines and after the last. No allocation from the first
 // frame to the last.
 #pragma once
@@ -29,8 +29,8 @@
 
 namespace axg {
 
-inline constexpr std::int64_t kAfterStopUs = 10'000;  // so long its frames are still shown
-// A hole of this length before the guard is armed: it begins anew behind it.
+inline constexpr std::int64_t kAfterStopUs = 10'000;  // after a stop, frames are still shown
+// A guard that was never armed restarts after a longer time without frames.
 inline constexpr std::int64_t kHoleUs = 10'000'000;
 
 struct ReplayOptions {
@@ -46,7 +46,7 @@ struct ReplayOptions {
     std::function<void(const CanFrame&)> sent{};  // each frame that the guard sends; may be empty
 };
 
-/// A cycle that took long, with its input.
+/// A slow cycle with its input.
 struct SlowCycle {
     std::int64_t spent_ns = 0;
     AxisSnapshot snapshot;
@@ -59,7 +59,7 @@ struct PairStatistics {
     std::uint64_t slow = 0, warn = 0;
 };
 
-/// How often a cycle took so many; the last place: so many and more.
+/// Number of cycles by their count; the last place: this count and higher.
 struct CountTable {
     std::array<std::uint64_t, 2048> cycles{};
 
@@ -68,14 +68,14 @@ struct CountTable {
     [[nodiscard]] std::uint32_t at_share(double share) const noexcept;
 };
 
-/// What the proofs of stoppable mode cost, cycle by cycle.
+/// Cost of the proofs of stoppable mode, cycle by cycle.
 struct ProofStatistics {
     CountTable queries, stages;
     std::uint32_t queries_most = 0, stages_most = 0;
     std::uint64_t withheld = 0;  // cycles without a permit, and without a stop
 };
 
-/// What the clearance levels came to: samples by the worst level of their pairs, and queries a
+/// Results of the clearance levels: samples by the worst level of their pairs, and queries a
 /// sample.
 struct ClearanceLevelStatistics {
     std::uint64_t slow = 0, warn = 0;
@@ -83,7 +83,7 @@ struct ClearanceLevelStatistics {
     std::uint32_t queries_most = 0;
 };
 
-/// What is kept of a stop, and of the first sample of every later episode of contact (keep_going).
+/// Record of a stop, and of the first sample of every later episode of contact (keep_going).
 struct StopEvent {
     GuardFault cause = GuardFault::verdict;
     StopReason reason = StopReason::none;  // cause verdict or input
@@ -98,10 +98,10 @@ struct StopEvent {
     UnprovenPair unproven{};   // stoppable mode: `pair`, as its proof failed
 };
 inline constexpr std::size_t kStopsKept = 64;
-/// Of a verdict or the input why, of any other stop what led to it.
+/// The reason of a verdict or an input fault; the cause of any other stop.
 [[nodiscard]] const char* reason_text(const StopEvent& stop) noexcept;
 
-/// What a cycle came to, for whoever writes it down.
+/// Result of a cycle, for observers.
 struct ReplayCycle {
     const AxisSnapshot& snapshot;
     const PairQueries& pair_queries;
@@ -131,30 +131,31 @@ class ReplayRun {
     ReplayRun(const Machine& machine, Engine engine, const ContainmentTest& containment_test,
               const ReplayOptions& options, std::function<void(const ReplayCycle&)> observe);
 
-    /// One frame in order of time. False: stopped, not to keep going, and what the guard sends
-    /// within kAfterStopUs is sent.
+    /// Processes one frame; call in order of time. False: the guard stopped without keep_going, and
+    /// kAfterStopUs are over.
     [[nodiscard]] bool on_frame(const CanFrame& frame);
-    /// After the last frame: what a stop still sends, and whether the axes were moving.
+    /// Call after the last frame: sends the remaining frames of a stop, and checks whether the axes
+    /// were moving.
     void finish();
 
     [[nodiscard]] std::span<const StopEvent> stops() const noexcept {
         return {stops_.data(), stop_count_ < kStopsKept ? stop_count_ : kStopsKept};
     }
-    /// The first sample whose permit was withheld though all was known that can be, and how many
-    /// there were: the machine would not have moved. samples 0: none.
+    /// The first sample whose permit was withheld although receiver and history were valid, and how
+    /// many there were: the machine would not have moved. samples 0: none.
     [[nodiscard]] const StopEvent& withheld() const noexcept { return withheld_; }
     [[nodiscard]] std::uint64_t stop_count() const noexcept { return stop_count_; }
     /// The trace ends while the axes move: when the guard stops, if it was armed. samples 0: no.
     [[nodiscard]] const StopEvent& end_in_motion() const noexcept { return end_in_motion_; }
-    /// When the guard was armed first; nothing: never.
+    /// When the guard was armed first; nullopt: never.
     [[nodiscard]] std::optional<std::int64_t> armed_us() const noexcept { return armed_us_; }
-    /// Whether it could have been.
+    /// Whether it could have been armed.
     [[nodiscard]] bool was_ready() const noexcept { return was_ready_; }
     [[nodiscard]] std::uint64_t permits() const noexcept;  // sent
     /// Samples whose verdict allows a permit, armed or not.
     [[nodiscard]] std::uint64_t proven() const noexcept { return proven_; }
-    /// Samples without one because too little was known before them: no sign of a pair that is
-    /// near.
+    /// Samples without a permit because receiver or history were not valid yet: no sign of a near
+    /// pair.
     [[nodiscard]] std::uint64_t early() const noexcept { return early_; }
     [[nodiscard]] std::span<const PairStatistics> pairs() const noexcept { return pairs_; }
     [[nodiscard]] bool is_stoppable() const noexcept {
@@ -178,16 +179,16 @@ class ReplayRun {
     [[nodiscard]] std::span<const SlowCycle> slowest() const noexcept {
         return {slowest_.data(), slow_count_};
     }
-    /// Of the guard's receiver, all starts together.
+    /// Counters of the guard's receiver, summed over all starts.
     [[nodiscard]] ReceiverCounters input() const noexcept;
     [[nodiscard]] ReceiverState receiver_state() const noexcept {
         return guard_ ? guard_->guard().receiver().state() : ReceiverState::invalid;
     }
     [[nodiscard]] std::uint64_t frame_count() const noexcept { return frame_count_; }
-    /// Parts of the machine whose hashes a board in the trace says. The guard is given its own for
-    /// the others.
+    /// Number of parts of the machine whose hashes a board in the trace sends. For the others the
+    /// guard receives its own.
     [[nodiscard]] int hashes_heard() const noexcept { return std::popcount(hashes_heard_); }
-    /// Frames of a guard in the trace: not read, for this guard would take them for a second one.
+    /// Frames of a guard in the trace: not read, because this guard would detect a second guard.
     [[nodiscard]] std::uint64_t guard_frames() const noexcept { return guard_frames_; }
 
   private:

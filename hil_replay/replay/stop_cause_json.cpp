@@ -67,7 +67,7 @@ Json limit_json(const LimitFact& fact, const Machine& machine) {
     Json out{{"kind", to_text(fact.kind)},
              {"axis", axis.name},
              {"measured", in_axis_units(axis, fact.measured)}};
-    if (fact.declared > 0) {  // of a range none is
+    if (fact.declared > 0) {  // a range has no declared value
         out["declared"] = in_axis_units(axis, fact.declared);
     }
     out["unit"] = unit_of(axis, figure_of(fact.kind));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a stop is about and the ways out of it, as JSON, the same for a replay and a drive. Keys:
+// Cause of a stop and the ways out of it, as JSON, the same for a replay and a drive. Keys:
 // docs/reference/json.md.
 #pragma once
 
@@ -16,7 +16,7 @@
 namespace axg {
 
 /// Adds `pair`, `fault` and `limit` (units of the machine file), each where `reason` has one.
-/// @param pair   kNoIndex: it is about none
+/// @param pair   kNoIndex: the stop concerns no pair
 /// @param fault  of reason input
 /// @param limit  of a reason that has one
 void add_stop_cause(const Machine& machine, StopReason reason, std::uint32_t pair,

@@ -19,7 +19,7 @@ namespace {
 
 using Limits = std::array<AxisLimits, kAxesMax>;
 
-/// What the trace shows of the pair's axes, where that is less than what is declared.
+/// Limits of the pair's axes that the trace shows, if lower than the declared ones.
 struct ShownLimits {
     Limits limits;
     std::string text;  // empty: none is less
@@ -84,7 +84,7 @@ WhyCause cause_of(const StopWhy& why) {
     return why.remedies.queries ? WhyCause::halving : WhyCause::not_proven;
 }
 
-/// At the sampled pose alone: of contact mode, and of a pair inside another one.
+/// Explains a stop at the sampled pose only: in contact mode, or if one body is inside the other.
 StopWhy why_at_pose(const WhySources& sources, const StopFacts& stop) {
     const Machine& machine = sources.loaded.machine;
     StopWhy why;

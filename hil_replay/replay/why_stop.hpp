@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Why a stop, or a permit withheld: the distance that the proof needed, the distance available, and
-// the changes that would have proven it. For the report.
+// Explains a stop or a withheld permit for the report: the distance that the proof needed, the
+// distance available, and the changes that would have proven it.
 #pragma once
 
 #include <cstdint>
@@ -29,14 +29,14 @@ struct StopWhy {
     bool is_whole = false;  // need.until_braking_mm is the whole reach
     bool is_jog = false;    // need.margin_mm is the floor of the jog
     bool is_list_full = false;
-    QueryStatus full = QueryStatus::ok;  // an overflow: which list; ok: not known, or none
+    QueryStatus full = QueryStatus::ok;  // an overflow: which list; ok: unknown, or none
     std::uint32_t queries = 0;           // of the proof that failed
     double available_mm = 0;             // certified at the sampled position
     double within_mm = 0;                // clearances were measured up to this
     double worst_mm = 0;                 // least clearance found in the reach
     std::optional<OpenPart> open;
     NeedRemedies remedies;
-    std::string other_limits;  // those that `are_other_limits` is about
+    std::string other_limits;  // the limits behind `are_other_limits`
     bool has_reach = false;
     JointBox reach;                 // every position of the axes that was to be proven
     std::vector<ReachBody> bodies;  // the pair's, in it
@@ -45,20 +45,20 @@ struct StopWhy {
 /// The list's key in cycle.lists and capacities of the machine file; null: `status` is no overflow.
 [[nodiscard]] const char* full_list(QueryStatus status) noexcept;
 
-/// A stop, or a permit withheld, as its cycle left it.
+/// Data of a stop or a withheld permit after its cycle.
 struct StopFacts {
     StopReason reason = StopReason::none;
     std::uint32_t pair = kNoIndex;
     const AxisSnapshot& snapshot;
-    const UnprovenPair& unproven;  // not known: of contact mode, or not about a certificate
+    const UnprovenPair& unproven;  // !is_known: contact mode, or no certificate failed
 };
-/// What is queried again about it.
+/// Sources for new queries about the stop.
 struct WhySources {
     const LoadedMachine& loaded;
     Engine engine;
     const LimitSurvey* limits = nullptr;  // null: the motion was not measured
 };
-/// Nothing: the stop is not about the distance of a pair.
+/// Returns nullopt if the stop does not concern the distance of a pair.
 /// Cost: as find_remedies; milliseconds to a second.
 [[nodiscard]] std::optional<StopWhy> why_of(const WhySources& sources, const StopFacts& stop);
 /// The plain sentences of a stop, without indent and end.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Why a stop, as lines of the report.
+// Formats the explanation of a stop as lines of the report.
 #include <fmt/format.h>
 
 #include <string>

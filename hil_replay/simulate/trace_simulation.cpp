@@ -21,9 +21,9 @@ class TraceBuilder {
     TraceBuilder(const Machine& machine, const std::string& path, SimulationSummary& summary)
         : machine_(machine), encoder_(machine), writer_(path), summary_(summary) {}
 
-    /// False after an error, which is in the summary then. A board with a look-ahead path has
-    /// a buffer of them: what is added now moves the axes that many samples later, and they stand
-    /// until it is full.
+    /// False after an error, which is in the summary then. A board with a look-ahead path buffers
+    /// that many samples: the axes reach a sample that many periods after it is added, and rest
+    /// until the buffer is full.
     bool add(const MotionSample& sample) {
         const std::uint32_t look_ahead = encoder_.frame_set().look_ahead_samples;
         if (look_ahead == 0) {
@@ -41,7 +41,7 @@ class TraceBuilder {
         return send(now, &points);
     }
 
-    /// The axes come to where the last sample is.
+    /// Moves the axes to the last sample.
     bool empty_buffer() {
         const std::uint32_t look_ahead = encoder_.frame_set().look_ahead_samples;
         for (std::uint32_t i = 0; i < look_ahead && !buffer_.empty(); ++i) {
@@ -91,9 +91,9 @@ class TraceBuilder {
         return false;
     }
 
-    /// A receiver takes unchanged positions for a frozen sender while the mode says moving: an axis
-    /// that needs many samples for one count of its frame counts as standing, as it does on a real
-    /// board's standstill window.
+    /// A receiver reports a frozen sender if positions do not change in mode moving. So an axis
+    /// that needs many samples for one count of its frame counts as at rest, as in a real board's
+    /// standstill window.
     [[nodiscard]] std::uint8_t mode_of(const MotionSample& sample) const {
         if (sample.tool != last_.tool && summary_.samples > 0) {
             return kModeToolChange;
@@ -178,8 +178,8 @@ SimulationSummary simulate_trace(const Machine& machine, const Program& program,
         }
     }
     summary.program_s = static_cast<double>(before.index) * kMotionStepS;
-    // Up to the next sample instant, and one more at rest: the receiver needs to see the end pose
-    // stand.
+    // Adds the next sample instant and one more at rest, so that the receiver sees the end pose at
+    // rest.
     for (int i = 0; i < 2; ++i) {
         before.index = (before.index / every + 1) * every;
         if (!trace.add(before)) {

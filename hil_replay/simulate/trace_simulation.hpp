@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A program's motion as the CAN frames a motion board would send, into a log.
+// Writes a program's motion to a log, as the CAN frames that a motion board would send.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ namespace axg {
 inline constexpr std::int64_t kTraceStartUs =
     1'000'000;  // fixed, so that equal programs give equal bytes
 inline constexpr double kStandstillCounts =
-    0.05;  // axes slower than this a sample count as standing
+    0.05;  // frame counts a sample; slower axes count as at rest
 
 struct SimulationOptions {
     std::uint32_t sample_us = 1000;  // a multiple of 100
@@ -39,8 +39,8 @@ struct SimulationSummary {
 };
 
 /// Writes `path` under a temporary name first. The log begins at kTraceStartUs with the start pose
-/// and ends with one sample of the end pose at rest. The machine's CanLayout says how frames look;
-/// its sample_us is replaced.
+/// and ends with one sample of the end pose at rest. The machine's CanLayout defines the frames;
+/// options.sample_us replaces its sample_us.
 [[nodiscard]] SimulationSummary simulate_trace(const Machine& machine, const Program& program,
                                                const SimulationOptions& options,
                                                const std::string& path);

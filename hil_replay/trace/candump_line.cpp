@@ -141,7 +141,7 @@ LineFault parse_flexible(const char*& at, const char* end, CanFrame& frame) noex
     ++at;
     frame.fd = true;
     frame.bit_rate_switch = (flags & 1) != 0;
-    frame.error_state = (flags & 2) != 0;  // 4 says "FD" again, 8 says nothing known
+    frame.error_state = (flags & 2) != 0;  // bit 4 repeats "FD", bit 8 has no meaning
     const char* begin = at;
     const LineFault fault = parse_bytes(at, end, 64, frame);
     if (!fault && !is_fd_length(frame.length_bytes)) {

@@ -23,12 +23,12 @@ namespace axg {
                                                         std::string& error);
 
 /// One line of the common core, newline included: six fraction digits, upper-case hexadecimal, no
-/// dots, no raw DLC, FD flags 0..3, ` T` or ` R` only where `directions` asks for it. Negative
-/// times cannot be written and become 0.
+/// dots, no raw DLC, FD flags 0..3, ` T` or ` R` only with `directions`. Negative times cannot be
+/// written and become 0.
 void append_candump(std::string& text, const CanFrame& frame, std::string_view device,
                     bool directions = false);
 
-/// Writes a log. It has its name when it is complete: a reader never meets half.
+/// Writes a log. The file gets its name only when it is complete: no reader opens a partial log.
 class CandumpWriter {
   public:
     explicit CandumpWriter(const std::string& path, std::string device = "can0",

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Evidence of a trace about each declared limit: the least speed, acceleration and
-// jerk that explain them, errors taken off. mm and s, or rad and s.
+// jerk that explain them, less the errors. mm and s, or rad and s.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ struct LimitPeak {
 
 struct AxisLimitSurvey {
     LimitPeak speed, acceleration, jerk;
-    double seen_speed = 0, seen_acceleration = 0;  // errors not taken off
+    double seen_speed = 0, seen_acceleration = 0;  // errors not subtracted
     std::uint64_t stops = 0;                       // of the board's own, harder than free motion
     double softest_stop = 0;     // the deceleration of the softest of them; 0: there was none
     double hardest_in_stop = 0;  // of the stop that is on
@@ -51,8 +51,9 @@ struct ProposedLimits {
     bool is_jerk_unlimited = false;  // the acceleration is full within one stride
 };
 
-/// A tenth above what was seen, errors not taken off, for a limit must not be below what the axis
-/// does; rounded up to two digits in the unit of the machine file. Of a stop a tenth below, down.
+/// A tenth above the largest value in the trace, errors not subtracted: a limit must not be below
+/// the motion of the axis. Rounded up to two digits in the unit of the machine file. A stopping
+/// deceleration: a tenth below the softest stop, rounded down.
 /// @param stride_s  time between two points that are compared
 [[nodiscard]] ProposedLimits proposed_limits(const Axis& axis, const AxisLimitSurvey& seen,
                                              double stride_s) noexcept;

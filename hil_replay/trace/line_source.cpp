@@ -30,7 +30,7 @@ LineSource::~LineSource() {
     }
 }
 
-/// Moves what is left to the front and reads behind it.
+/// Moves the unread bytes to the front and reads more behind them.
 bool LineSource::refill() {
     std::memmove(buffer_.data(), rest_.data(), rest_.size());
     const std::size_t room = buffer_.size() - rest_.size();
@@ -71,7 +71,7 @@ bool LineSource::next(std::string_view& line) {
     return true;
 }
 
-/// A line as it stands; where it is too long, how it begins.
+/// Returns a line with its line end, or only the beginning of one that is too long.
 bool LineSource::take(std::string_view& line) {
     is_too_long_ = false;
     for (;;) {

@@ -16,20 +16,20 @@ class LineSource {
   public:
     /// @param text  must outlive the source
     explicit LineSource(std::string_view text) noexcept : rest_(text), at_end_(true) {}
-    /// Takes over the file.
+    /// Owns the file from now on.
     explicit LineSource(std::FILE* file);
     ~LineSource();
     LineSource(const LineSource&) = delete;
     LineSource& operator=(const LineSource&) = delete;
 
     /// The next line without its end (LF or CR LF), a byte-order mark at the start left out. False
-    /// at the end and on a read error; error() then says which. The view holds until the next call.
+    /// at the end and on a read error; then error() is set. The view is valid until the next call.
     [[nodiscard]] bool next(std::string_view& line);
     /// The line is longer than kLineBytesMax: next() gave only how it begins.
     [[nodiscard]] bool is_too_long() const noexcept { return is_too_long_; }
     [[nodiscard]] const std::string& error() const noexcept { return error_; }
     [[nodiscard]] std::uint64_t line_number() const noexcept { return line_number_; }
-    /// What of the file was taken, 0 to 1. 0: its size is not known.
+    /// The share of the file that was read, 0 to 1. 0: of unknown size.
     [[nodiscard]] double share() const noexcept;
 
   private:

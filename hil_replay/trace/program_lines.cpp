@@ -102,7 +102,7 @@ bool take_checksum(std::string_view& text) {
     return take_number(last, sum, 16) && last == "\n" && sum == crc_of(text);
 }
 
-/// A name with an end of line in it is shown as the terminal shows it: nobody opens that name.
+/// Escapes a name with an end of line as for a terminal: no reader opens a file by that name.
 std::string on_one_line(const std::string& name) {
     return name.find_first_of("\n\r") == std::string::npos ? name : escaped(name, kProgramNameMax);
 }

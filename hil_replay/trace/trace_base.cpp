@@ -74,7 +74,7 @@ TextTrace::Line TextTrace::read_line(std::string_view text, CanFrame& frame,
     return is_blank ? Line::nothing : parse(text, frame, device, fault);
 }
 
-/// Keeps the message: the error, or in lenient mode the first of those counted. Always true.
+/// Stores the message: the error, or in lenient mode the first of those counted. Always true.
 bool TextTrace::complain(const LineFault& fault) {
     if (options_.lenient && ++skipped_ > 1) {
         return true;
@@ -123,8 +123,8 @@ bool is_packed(std::FILE* file) {
 }
 
 #ifdef AXG_HAS_ZLIB
-/// Members that gzip packed, one behind the other. Not gzread(), which passes over what follows the
-/// last member without a word.
+/// Unpacks members of gzip, one behind the other. Not by gzread(), which silently skips bytes after
+/// the last member.
 class Unpacker {
   public:
     explicit Unpacker(std::FILE* file) noexcept : file_(file) {
@@ -187,7 +187,7 @@ class Unpacker {
     bool is_ready_ = false, is_between_members_ = true;
 };
 
-/// A stream of what is packed in `file`, which it takes over. A damaged file is a read error.
+/// A stream of the unpacked bytes of `file`, which it owns. A damaged file is a read error.
 std::FILE* unpack(std::FILE* file, const std::string& path, std::string& error) {
     auto unpacker = std::make_unique<Unpacker>(file);
     cookie_io_functions_t functions{};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What all text traces share: lines, one interface, time that does not run backwards, and one way
-// to complain.
+// Base of all text traces: lines, one interface, time that does not run backwards, and the messages
+// about faults.
 #pragma once
 
 #include <string>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a trace says about itself before the receiver is told what to expect: its sample period,
-// whether its axis frames are flexible (simulate --fd, --sample-us), and whether the board says its
-// session.
+// Properties of a trace that configure the receiver: the sample period, whether the axis frames are
+// flexible (simulate --fd, --sample-us), and whether the board sends its session.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +12,9 @@
 
 namespace axg {
 
-/// Median gap between the first SYNC frames of a trace, us. One that repeats the counter of the one
-/// before is left out. Reads the trace forward: open it anew
-/// to replay it. A receiver whose can.sample_us differs by more than 1 % from this refuses the
-/// trace (jumps, the sender's clock).
+/// Median gap between the first SYNC frames of a trace, us. Skips a frame that repeats the counter
+/// of the one before. Reads the trace forward: open it anew to replay it. A receiver whose
+/// can.sample_us differs by more than 1 % from this refuses the trace (jumps, the sender's clock).
 /// @return 0 when the trace holds fewer than three SYNC frames (format signals has none)
 [[nodiscard]] std::uint32_t trace_period_us(TraceReader& trace, std::uint32_t sync_id);
 
@@ -26,22 +24,22 @@ struct TracePeriod {
     PeriodVerdict verdict = PeriodVerdict::unknown;
     std::int64_t measured_ns = 0;  // 0: unknown
 };
-/// Of the first SYNC frames of a trace, up to the first window that refutes the period. Reads it
-/// forward, as trace_period_us does.
+/// Judges the first SYNC frames of a trace, up to the first window that refutes the period. Reads
+/// the trace forward, as trace_period_us does.
 [[nodiscard]] TracePeriod judge_trace_period(TraceReader& trace, const Machine& machine);
 
 /// Whether the frames on `axis_id` are flexible ones: judged by the first of them among the first
 /// thousand frames of the trace. Reads it forward, as trace_period_us does.
 [[nodiscard]] bool has_flexible_axes(TraceReader& trace, std::uint32_t axis_id);
 
-/// Whether a board in the trace says its session on this id: judged by the first second. Reads it
+/// Whether a board in the trace sends its session on this id: judged by the first second. Reads it
 /// forward, as trace_period_us does.
 [[nodiscard]] bool has_session_frames(TraceReader& trace, std::uint32_t session_id);
 
-/// Period and kind of frame are taken from the trace: simulate --sample-us and --fd may have chosen
-/// others than the machine file. A trace without session frames is of a board with permit 1. What
-/// was taken is said on stderr, and whether a live guard would refuse the period.
-/// @param period  null: not wanted
+/// Sets period and frame format in `machine` from the trace: simulate --sample-us and --fd may
+/// differ from the machine file. A trace without session frames is of a board with permit 1. Prints
+/// the changes on stderr, and whether a live guard would refuse the period.
+/// @param period  null: not needed
 /// @return  empty, or why the trace cannot be read
 [[nodiscard]] std::string take_trace_shape(const std::string& path, const TraceOptions& options,
                                            Machine& machine, TracePeriod* period = nullptr);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One way to read a recorded bus, whatever the file format: frames in file order, or the first
-// thing that is wrong.
+// Reads a recorded bus of any file format: returns frames in file order, or the first fault.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +16,7 @@ struct TraceOptions {
     std::int64_t backwards_us_max = 0;  // time may step back by this much (logs of several queues)
 };
 
-/// Reads frame by frame with fixed memory. After next() has said false: error() is empty at the end
+/// Reads frame by frame with fixed memory. After next() returned false: error() is empty at the end
 /// of the trace, or holds `FILE:LINE: message`.
 class TraceReader {
   public:
@@ -29,13 +28,13 @@ class TraceReader {
         const noexcept = 0;                                       // lines passed over, lenient only
     [[nodiscard]] virtual std::string first_skipped() const = 0;  // message of the first of them
     [[nodiscard]] virtual std::string_view device() const noexcept = 0;  // of the last frame
-    // What of the file was read, 0 to 1; 0: not known, of one that is packed.
+    // The share of the file that was read, 0 to 1; 0: no estimate, as for a packed file.
     [[nodiscard]] virtual double share() const noexcept = 0;
 };
 
-/// How the reading of a trace ended: what a report states, so that nobody takes half for the whole.
+/// How the reading of a trace ended. A report states it, so that partial data are recognisable.
 struct TraceEnd {
-    std::string fault{};  // empty: read to the end, or as far as was wanted
+    std::string fault{};  // empty: read to the end, or as far as needed
     std::uint64_t lines_skipped = 0;
     std::string first_skipped{};  // FILE:LINE: what was wrong with it
 };
@@ -43,7 +42,7 @@ struct TraceEnd {
     return {trace.error(), trace.skipped(), trace.first_skipped()};
 }
 
-/// Opens a candump log or a Vector ASC file, told apart by its first line that is not blank.
+/// Opens a candump log or a Vector ASC file; the first line that is not blank shows which.
 /// @return null with a message in `error` when the file cannot be read or is neither
 [[nodiscard]] std::unique_ptr<TraceReader> open_trace(const std::string& path,
                                                       const TraceOptions& options,

@@ -33,7 +33,7 @@ void TraceSurvey::add(const CanFrame& frame) {
     first_us_ = frame_count_ == 0 ? frame.time_us : first_us_;
     last_us_ = std::max(frame_count_ == 0 ? frame.time_us : last_us_, frame.time_us);
     ++frame_count_;
-    // Of an error frame the id holds what went wrong, which is no identifier.
+    // The id of an error frame holds the kind of error, and is no identifier.
     const IdKey key{frame.error, frame.extended, frame.remote, frame.fd,
                     frame.error ? 0 : frame.id};
     Times& times = ids_[key];

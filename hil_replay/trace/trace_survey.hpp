@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a recorded bus carries: each identifier with its rate, jitter and gaps, and what the axes of
-// a machine do in it. us, mm, rad.
+// Surveys a recorded bus: each identifier with its rate, jitter and gaps, and the motion of the
+// axes of a machine. us, mm, rad.
 #pragma once
 
 #include <array>
@@ -30,7 +30,7 @@ struct IdSurvey {
     std::int64_t longest_us = 0, longest_at_us = 0;  // the longest pause, and when it began
 };
 
-/// What kind of frame an identifier was in; frames that report errors are one kind together.
+/// An identifier and its kind of frame; all error frames are one kind.
 struct IdKey {
     bool is_error = false, is_extended = false, is_remote = false, is_fd = false;
     std::uint32_t id = 0;

@@ -14,7 +14,7 @@ namespace {
 using detail::to_number;
 using detail::Words;
 
-constexpr std::uint32_t kBusError = 0x80;     // class of an error frame that says no more
+constexpr std::uint32_t kBusError = 0x80;     // class of an error frame without further data
 constexpr std::uint32_t kFlagFd = 1U << 12U;  // "EDL" in the flags column of a CANFD line
 constexpr std::uint32_t kFlagRemote = 1U << 4U;
 constexpr std::uint8_t kFdLengths[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64};
@@ -52,7 +52,7 @@ class AscTrace : private OwnedLines, public TextTrace {
     LineFault parse_id(std::string_view word, CanFrame& frame) const;
     LineFault parse_data(Words& words, std::size_t count, CanFrame& frame) const;
 
-    int base_ = 0;  // 16 or 10 once the header has said so
+    int base_ = 0;  // 16 or 10 once the header has stated it
     bool is_relative_ = false;
     std::int64_t start_us_ = 0;
     std::int64_t last_us_ = 0;  // stamp of the last event, since the start
@@ -163,7 +163,7 @@ TextTrace::Line AscTrace::parse_classical(Words& words, CanFrame& frame, LineFau
     }
     const std::string_view direction = words.next();
     if (direction == "TxRq") {
-        return Line::nothing;  // asked for, not sent: the sent frame has its own line
+        return Line::nothing;  // requested, not sent: the sent frame has its own line
     }
     if (!parse_direction(direction, frame)) {
         fault = {"direction", direction, "Rx, Tx or TxRq"};
@@ -241,8 +241,8 @@ TextTrace::Line AscTrace::parse_flexible(Words& words, CanFrame& frame, std::str
         fault = {"CANFD", words.rest(), "duration, bits and flags after the bytes"};
         return Line::fault;
     }
-    // A channel that can do FD carries classical frames too; writers that fill the flags tell them
-    // apart.
+    // A channel that can do FD carries classical frames too; the flags distinguish them, if the
+    // writer sets any.
     const bool is_classical = flags != 0 && (flags & kFlagFd) == 0;
     frame.fd = !is_classical;
     frame.remote = is_classical && (flags & kFlagRemote) != 0;

@@ -14,8 +14,8 @@ namespace axg {
 
 /// Times are microseconds since 1970 as the header's date and the stamps give them; the file names
 /// no time zone, so the date is read as UTC. The interface of a frame is its channel, "1". An
-/// ErrorFrame line becomes an error frame of class "bus error" (0x80) of 8 bytes: the line does not
-/// say more in a way that all writers share.
+/// ErrorFrame line becomes an error frame of class "bus error" (0x80) of 8 bytes: the rest of
+/// the line differs from writer to writer.
 /// @param text  the trace in memory, which must outlive the reader
 [[nodiscard]] std::unique_ptr<TraceReader> read_asc(std::string name, std::string_view text,
                                                     const TraceOptions& options);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What frames on the bus show of board and guard, for a display: positions, permit, hints, stop,
-// heartbeat, hashes. Garbage is counted and changes nothing else. No clock, no I/O; us.
+// State of board and guard from the frames on the bus, for a display: positions, permit, hints,
+// stop, heartbeat, hashes. Garbage is counted and changes nothing else. No clock, no I/O; us.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@ enum class PermitAnswer : std::uint8_t { unknown = 0, right, wrong };
 
 struct BusState {
     std::uint64_t frames = 0;            // data frames with an id of the machine file
-    std::uint64_t bad = 0;               // of the guard's ids, that are not what the id says
+    std::uint64_t bad = 0;               // of the guard's ids, without the content of that id
     std::int64_t guard_us = kNeverSeen;  // last good frame of the guard
     std::int64_t board_us = kNeverSeen;  // last complete sample
     std::optional<AxisSnapshot> axes;    // of that sample

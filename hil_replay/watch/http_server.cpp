@@ -242,7 +242,7 @@ MHD_Result HttpServer::Impl::open_stream(MHD_Connection* connection) {
     return answer(connection, MHD_HTTP_OK, response);
 }
 
-/// Called by the thread of the library when the connection takes more.
+/// The library's thread calls this when the connection can send more.
 ssize_t HttpServer::Impl::on_read(void* from, std::uint64_t /*position*/, char* to,
                                   std::size_t size) {
     Stream& stream = *static_cast<Stream*>(from);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A few texts and a stream of events over HTTP, read-only: GET alone, names looked up in a table,
 // never in the file system. libmicrohttpd reads and writes in a thread of its own, so no client can
-// hold up who publishes; each limit stands below. Source of the API: microhttpd.h.
+// delay the publisher; the limits are below. Source of the API: microhttpd.h.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,7 @@ struct ListenAddress {
     std::uint16_t port = 0;
     bool is_ipv6 = false, is_loopback = false;
 };
-/// "127.0.0.1:8642", "[::1]:8642", "localhost:8642". Nothing: no such address.
+/// "127.0.0.1:8642", "[::1]:8642", "localhost:8642". nullopt: no such address.
 [[nodiscard]] std::optional<ListenAddress> read_listen_address(std::string_view text);
 
 /// Whether a request that names this host was meant for this server: localhost or a numeric
@@ -52,7 +52,7 @@ class HttpServer {
     /// The newest event, one line; a client that reads slowly misses those before. Never waits for
     /// a client.
     void publish(std::string event);
-    /// That it listens at.
+    /// The port that it listens at.
     [[nodiscard]] std::uint16_t port() const noexcept;
 
   private:

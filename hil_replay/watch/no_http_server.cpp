@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where libmicrohttpd is not installed.
+// HttpServer of a build without libmicrohttpd.
 #include "hil_replay/watch/http_server.hpp"
 
 namespace axg {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads a guard's status socket again and again in a thread of its own, for a guard that is held
-// may take two seconds to reply, or never. It connects and reads; it writes nothing.
+// Reads a guard's status socket again and again in a thread of its own: a guard that is held may
+// reply after two seconds, or never. It connects and reads; it writes nothing.
 #pragma once
 
 #include <condition_variable>

@@ -9,7 +9,7 @@ namespace axg {
 namespace {
 
 struct NamedPart {
-    const char* path;  // that a browser asks for
+    const char* path;  // that a browser requests
     const char* file;
     const char* type;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The files of the live page, by the path a browser asks for.
+// The files of the live page, by the path that a browser requests.
 #pragma once
 
 #include <cstdio>
@@ -10,7 +10,7 @@
 
 namespace axg {
 
-/// Nothing: `messages` says what is missing, and what to install.
+/// nullopt: `messages` has the missing file, and what to install.
 [[nodiscard]] std::optional<HttpParts> watch_parts(const LoadedMachine& loaded,
                                                    std::FILE* messages);
 

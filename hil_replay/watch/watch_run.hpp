@@ -18,7 +18,7 @@ struct WatchSources {
     std::string status_path;          // empty: none
 };
 
-/// Until `is_ended` says so, which is asked once a page.
+/// Runs until `is_ended` returns true; calls it once for each state of the page.
 /// @param loaded  must outlive it
 void run_watch(const LoadedMachine& loaded, WatchSources sources, HttpServer& server,
                const std::function<bool()>& is_ended);

@@ -76,7 +76,7 @@ WatchHeadline headline_of_line(const WatchInput& input) {
     return out;
 }
 
-/// Of a guard that is heard, and whose socket is not read.
+/// The headline of a guard that sends on the bus, and whose socket is not read.
 WatchHeadline headline_of_bus(const WatchInput& input) {
     const BusState& bus = *input.bus;
     if (bus.heartbeat == GuardHeartbeat::tripped) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One state of the live page: what is known of guard, board and machine at one instant, and the
-// words that a person reads first. As JSON it is what the page takes.
+// One state of the live page: guard, board and machine at one instant, and the headline that a
+// person reads first; as JSON for the page.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ inline constexpr std::int64_t kStatusEveryUs = 200'000;
 struct GuardLine {
     std::string phase, cause, reason, withheld, withheld_reason;  // names; "none", "nothing"
     std::string pair, withheld_pair;                              // "a - b"; empty: none
-    std::string why, withheld_why;  // JSON, as the line has them; empty, "null": not known
+    std::string why, withheld_why;  // JSON, as the line has them; empty, "null": unknown
     std::string bus, machine, configuration, version, mode;
     bool has_view = false;  // the keys of a guard whose bus thread turns
     bool stands = false, is_confirmed = false;
@@ -32,7 +32,7 @@ struct GuardLine {
 /// "a - b", as the status line has it.
 [[nodiscard]] std::string words_of_pair(const Machine& machine, std::uint32_t pair);
 
-/// Nothing: no line of this version.
+/// nullopt: no line of this version.
 [[nodiscard]] std::optional<GuardLine> read_guard_line(std::string_view line);
 
 struct WatchInput {
@@ -57,17 +57,17 @@ struct WatchHeadline {
 };
 [[nodiscard]] WatchHeadline headline_of(const WatchInput& input);
 
-/// What a person has to know besides: machine files that differ, a bus that is down, garbage.
+/// Further warnings for a person: machine files that differ, a bus that is down, garbage.
 [[nodiscard]] std::vector<std::string> notes_of(const WatchInput& input);
 
-/// What the page explains by distances: a stop, or a permit withheld.
+/// A stop or a withheld permit that the page explains by distances.
 struct WatchWhy {
     std::string of;         // "stop", "permit withheld"
-    std::string pair;       // empty: not known
-    std::string distances;  // JSON, as the line has it; empty: not known
-    std::string words;      // why not; empty: it is
+    std::string pair;       // empty: unknown
+    std::string distances;  // JSON, as the line has it; empty: unknown
+    std::string words;      // why there are no distances; empty: there are
 };
-/// None where nothing is withheld, or where it is not about a pair.
+/// Empty without a stop or a withheld permit, or if the status line names no pair for it.
 [[nodiscard]] std::vector<WatchWhy> whys_of(const WatchInput& input);
 
 /// In ASCII, one line.

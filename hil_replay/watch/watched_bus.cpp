@@ -13,7 +13,7 @@
 namespace axg {
 namespace {
 
-// A full bus sends 100 frames in this time, and a queue has room for more: one wake-up takes many.
+// A full bus sends 100 frames in this time, and a queue holds more: one wake-up reads many.
 constexpr std::int64_t kNapUs = 5'000;
 
 void sleep_until(std::int64_t until_us) {

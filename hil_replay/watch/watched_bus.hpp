@@ -30,9 +30,9 @@ class WatchedBus {
     [[nodiscard]] static std::unique_ptr<WatchedBus> open_trace_file(const std::string& path,
                                                                      std::string& fault);
 
-    /// Hands over what came, or comes until then. At most kFramesATurnMax frames.
+    /// Passes on the frames that have come, or come until then. At most kFramesATurnMax frames.
     void read_until(std::int64_t until_us, const OnFrame& on_frame);
-    /// Why nothing comes; empty: nothing prevents it.
+    /// Why no frames come; empty: no fault.
     [[nodiscard]] const std::string& fault() const noexcept { return fault_; }
     [[nodiscard]] const std::string& name() const noexcept { return name_; }
 

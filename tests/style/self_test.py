@@ -9,6 +9,8 @@ import tempfile
 import textwrap
 
 import banned_calls
+import comments
+import commits
 import contraction_flags
 import deployed_symbols
 import figure_labels
@@ -295,6 +297,28 @@ def links_are_found():
             {"docs/guide/index.md": index, "docs/guide/a.md": ""}))) == bad)
 
 
+def comments_notice():
+    for text, bad in [
+            ("// It knows nothing.\n", True), ("// The known-answer test.\n", False),
+            ('f("it knows");\n', False), ("// NOLINT: as told\n", False),
+            ("// What is open.\n", True), ("// It is\n// What it is.\n", False),
+            ("int a = 1'000;  // it's what it keeps\n", True)]:
+        found = list(comments.faults_of("room", comments.sentences_of(text)))
+        expect(f"comments: {text}", bool(found) == bad)
+    few = ["Returns the pose of a body. " * 60, "It keeps the pose."]
+    expect("comments: a few are no fault", not list(comments.faults_of("room", few)))
+
+
+def commits_notice():
+    core, docs = "core/a/x.cpp", "docs/x.md"
+    for subject, body, name, bad in [
+            ("core: pose boxes", "Why.", core, False), ("core: " + 67 * "a", "Why.", "", True),
+            ("core: pose boxes", "", core, True), ("docs: shorten", "", docs, False),
+            ("tests: pose boxes", "", "tests/unit/" + core, False)]:
+        log = f"\x01abc\x02{subject}\x02{body}\n\x02\n\n{name}\n"
+        expect(f"commits: {subject}, {name}", bool(list(commits.faults_of(log))) == bad)
+
+
 def words_notice():
     old = words.old_words("- **b**: x. *Not: kept\n  back, answer.*\n")
     expect("words: of the glossary", old == {"kept back"})
@@ -487,6 +511,8 @@ def main():
     readme_example_notices()
     guide_blocks_name_user_and_mark()
     links_are_found()
+    comments_notice()
+    commits_notice()
     words_notice()
     mutant_lists_notice()
     isa_symbols_notice()

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The guard inside a C program: guard_a_trace MACHINE.yaml TRACE.log [contact|stoppable] plays a
 // candump log (candump -L, classical frames) to it, arms it when it is ready, as soon as the axes
-// stand, and says when and why it stopped. A program on a real bus differs in four places, marked
+// rest, and prints when and why it stopped. A program on a real bus differs in four places, marked
 // BUS.
 #include <inttypes.h>
 #include <stdbool.h>
@@ -29,8 +29,8 @@ static bool read_frame(const char* line, axg_frame* out) {
     return true;
 }
 
-// The board of a trace is asked nothing: it says the hash that it was asked about (ids of
-// can.hashes: required).
+// The board of a trace is not there to reply: sends back the hash of the guard's own request (ids
+// of can.hashes: required).
 static void answer_hash(axg_guard* guard, const axg_frame* sent) {
     const uint32_t hashes_out = 0x602;
     const uint32_t hashes_in = 0x582;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ablations: a guard or a board made wrong on purpose, to show what the missing part is for. Each
-// one changes the data that a guard or a board receives, never code that is deployed.
+// Ablations: a guard or a board made wrong on purpose, to show the effect of the missing part. Each
+// one changes the data of a guard or a board, never code that is deployed.
 #pragma once
 
 #include "core/machine/machine.hpp"
@@ -8,24 +8,24 @@
 
 namespace axg::lab {
 
-/// The machine of a guard that forgets the jerk ramp: it supposes that braking sets in at once.
-/// Where `free_jerk_limited` holds, such a guard knows accelerations less well, and is longer.
+/// Removes the jerk ramp from the guard's machine: the guard assumes that braking begins at once.
+/// With `free_jerk_limited` such a guard bounds accelerations less tightly, so its reach is longer.
 void forget_jerk_ramp(Machine& of_guard) noexcept;
 
-/// The machine of a guard that believes any look-ahead path: `axis` is said to turn within one
-/// sample from any speed up to `speed` to the same speed back. mm/s or rad/s
+/// Makes the guard accept any look-ahead path: in its machine, `axis` may reverse within one sample
+/// period from any speed up to `speed` to the same speed back. mm/s or rad/s
 void believe_any_turn(Machine& of_guard, std::uint32_t axis, double speed) noexcept;
 
-/// A board without the dead man: it moves on when its permit has run out.
+/// Disables the board's dead-man: it moves on when its permit has ended.
 void forget_dead_man(BoardOptions& board) noexcept;
 
-/// Rule (iii) of docs/reference/board.md left out: the board forgets what it kept since its
-/// samples, so that every usable permit counts. After each latch.
+/// Disables rule (iii) of docs/reference/board.md: clears the highest caps since each sample, so
+/// that every usable permit counts. Call after each latch.
 void forget_what_was_kept(axg_board& board) noexcept;
 
-/// Rule (iv) left out: a raise shortens nothing. Before a latch: what the library takes for the end
-/// of the permit in force is that of the last one, so that it waits for nothing.
-/// @return  the end in force, for `keep_end` after the latch; 0: nothing was changed
+/// Disables rule (iv): a raise drops no permit. Call before a latch: sets the end in force to that
+/// of the last permit, so that the library raises the cap without waiting.
+/// @return  the previous end in force, for `keep_end` after the latch; 0 if unchanged
 [[nodiscard]] std::uint64_t forget_older_end(axg_board& board, std::int64_t period_us) noexcept;
 void keep_end(axg_board& board, std::uint64_t end_us) noexcept;
 

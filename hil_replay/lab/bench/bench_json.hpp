@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The documents of `axguard-lab bench --json`, as text; of --paper: paper_benchmark.hpp.
+// The documents of `axguard-lab bench --json`, as text; for --paper see paper_benchmark.hpp.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@ namespace axg {
 
 struct SceneMeasurement {
     std::vector<double> cycle_us;
-    std::size_t per_cycle = 0, far = 0, not_ok = 0;  // queries; results of the last cycle
+    std::size_t per_cycle = 0, far = 0, not_ok = 0;  // queries; results of all cycles
     std::optional<CudaDevice> device;
     CudaMemoryPlan memory;
     std::string lanes;
@@ -25,7 +25,7 @@ struct SceneMeasurement {
 /// @param kind  of the queries: hit, count or clearance
 [[nodiscard]] std::string describe_scene(const SceneMeasurement& m, const std::string& kind);
 
-/// @param passes  of which the least counts
+/// @param passes  number of passes; m.us is their least time
 [[nodiscard]] std::string describe_poses(const PoseMeasurement& m, std::uint32_t passes);
 
 /// Measured with one kernel for pairs of leaves (cuda/bench/leaf_kernels.hpp).
@@ -34,7 +34,7 @@ struct NamedMeasurement {
     WorstCaseMeasurement measured;
 };
 
-/// One document, or of several measurements one in which each is a column.
+/// One document; several measurements become its columns.
 [[nodiscard]] std::string describe_worst_case(const std::vector<NamedMeasurement>& all);
 
 [[nodiscard]] std::string describe_cycles(const CycleMeasurement& m);

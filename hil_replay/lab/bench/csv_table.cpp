@@ -38,7 +38,7 @@ std::vector<std::string_view> cut(std::string_view line) {
     }
 }
 
-/// Not a stream: reading a folder through one throws.
+/// Uses stdio because a stream throws when it reads a folder.
 bool read_file(const std::string& path, std::string& out) {
     std::FILE* const file = std::fopen(path.c_str(), "rb");
     if (file == nullptr) {

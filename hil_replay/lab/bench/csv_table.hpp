@@ -12,8 +12,8 @@ namespace axg {
 
 class CsvTable {
   public:
-    /// Reads the whole file. False: `error()` is FILE:LINE and what was expected.
-    /// Every row must have as many cells as the head; blank lines are passed over.
+    /// Reads the whole file. False on failure, with FILE:LINE and what was expected in `error()`.
+    /// Every row must have as many cells as the head; blank lines are skipped.
     [[nodiscard]] bool read(const std::string& path, std::span<const std::string_view> columns);
 
     [[nodiscard]] std::size_t row_count() const noexcept { return lines_.size(); }

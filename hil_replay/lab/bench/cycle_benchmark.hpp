@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// axguard-lab bench --worst-case --engine cpu: how long the longest cycle of a machine's plan takes
-// on this processor, whole chain.
+// axguard-lab bench --worst-case --engine cpu: measures the longest cycle of a machine's plan on
+// this processor, with the whole chain.
 #pragma once
 
 #include <cstdint>

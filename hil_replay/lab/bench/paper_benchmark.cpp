@@ -35,7 +35,7 @@ using paper::Timing;
 constexpr std::uint32_t kPosesOfMotion = 10;
 constexpr double kStepOfTravel = 1e-3;  // the longest step of an axis between two poses
 
-/// What every method is queried, pose by pose.
+/// The queries for every method, pose by pose.
 struct Experiment {
     LoadedMachine loaded;
     paper::Scene scene;
@@ -43,8 +43,8 @@ struct Experiment {
     std::vector<PairPose> poses;  // the same for the paper's kernels
 };
 
-/// Random places of the travel, and from each a short straight motion of all axes: consecutive
-/// poses are near each other, as samples are, so that an axis can be carried over.
+/// Random positions within travel, each with a short straight motion of all axes: consecutive
+/// poses are close, as samples are, so that a method can carry an axis over.
 std::vector<AxisSnapshot> random_snapshots(const Machine& machine, std::uint32_t count,
                                            std::uint64_t seed) {
     lab::Draw draw(seed);
@@ -112,14 +112,14 @@ int prepare(const PaperBenchmarkOptions& options, Experiment& e, std::FILE* mess
         }
         for (std::uint32_t i = 0; i < pair_queries->count; ++i) {
             e.queries.push_back(pair_queries->queries[i]);
-            e.queries.back().r_mm = 0;  // the paper asks for contact
+            e.queries.back().r_mm = 0;  // the paper tests for contact
             e.poses.push_back({i, pair_queries->queries[i].pose});
         }
     }
     return kExitClean;
 }
 
-/// Runs every query so often and keeps the least time of each; the clock runs around exactly
+/// Runs every query `passes` times and stores the least time of each. Each time covers exactly
 /// one query.
 template <class Run>
 PaperSeries timed(std::string name, const Experiment& e, std::uint32_t passes, const Run& run) {
@@ -137,7 +137,7 @@ PaperSeries timed(std::string name, const Experiment& e, std::uint32_t passes, c
     return series;
 }
 
-/// The engines say yes or no in time; the counts to compare with are asked for afterwards.
+/// Timed queries of the engines return no counts; this queries the counts afterwards.
 void count_touching(const Experiment& e, const Engine& engine, PaperSeries& series) {
     for (std::size_t i = 0; i < e.queries.size(); ++i) {
         Query query = e.queries[i];
@@ -187,7 +187,7 @@ int run_cpu(const Experiment& e, PaperBenchmark& out, std::FILE* messages) {
     return kExitClean;
 }
 
-/// What the pairs' surfaces have left once no triangle is in them that can never touch.
+/// The surfaces of each pair without the triangles that can never touch.
 std::vector<std::array<paper::Body, 2>> bodies_within_travel(
     const Experiment& e, const std::vector<KeptTriangles>& kept) {
     std::vector<std::array<paper::Body, 2>> out(e.scene.pairs.size());
@@ -236,8 +236,8 @@ int run_within_travel(const Experiment& e, PaperBenchmark& out, std::FILE* messa
     return kExitClean;
 }
 
-/// Runs a series on the GPU so often and keeps the least time of each query. The first run of a
-/// kernel loads it: one more pass, not counted, goes ahead.
+/// Runs a series on the GPU `passes` times and stores the least time of each query. An untimed pass
+/// comes first, because the first run of a kernel loads it.
 template <class Run>
 bool keep_least(PaperSeries& series, std::uint32_t passes, const Run& run) {
     std::vector<double> us(series.us.size());
@@ -275,7 +275,7 @@ bool run_certified(paper::Gpu& gpu, const Experiment& e, Timing timing, std::uin
     });
 }
 
-/// None, coalesced, each alone, all but each, all.
+/// No technique, coalesced only, each of the five alone, all but one of them, all five.
 std::vector<Techniques> technique_choices() {
     bool Techniques::*const kEach[] = {&Techniques::boxes, &Techniques::interchange,
                                        &Techniques::unroll, &Techniques::prefetch,
@@ -319,8 +319,8 @@ bool run_gpu(const Experiment& e, paper::Gpu& gpu, PaperBenchmark& out) {
     return good;
 }
 
-/// Every pair of triangles of a pose, certified, with launch and return; pose after pose, each time
-/// kept.
+/// Times the certified test of every triangle pair of a pose, with launch and return. Stores the
+/// time of each pose.
 bool time_every_pair(const Experiment& e, paper::Gpu& gpu, PaperBenchmark& out) {
     const auto pair_count = static_cast<std::uint32_t>(e.scene.pairs.size());
     std::vector<Found> found(e.poses.size());

@@ -35,7 +35,7 @@ struct TechniqueSeries {
     PaperSeries series;
 };
 
-/// Operating-range pruning: the naive test of what a proof of the whole travel leaves.
+/// Operating-range pruning: the naive test of the triangles that a travel proof leaves.
 struct WithinTravel {
     PaperSeries cpu;
     std::uint64_t triangle_pairs = 0;  // left, of all pairs of bodies
@@ -48,7 +48,7 @@ struct PaperBenchmark {
     std::string lanes;
     std::vector<PaperSeries> cpu;  // naive, certified, engine
     WithinTravel within_travel;
-    // Empty without a GPU, and `no_gpu` says why.
+    // Empty without a GPU, with the reason in `no_gpu`.
     std::vector<PaperSeries> gpu;  // naive, all techniques, certified: with launch and return
     std::vector<TechniqueSeries> techniques;
     // A pose at once: certified with launch and return, its device time, the CUDA engine.
@@ -61,11 +61,11 @@ struct PaperBenchmark {
     [[nodiscard]] std::size_t pose_count() const { return cpu.at(0).us.size() / pairs.size(); }
 };
 
-/// Runs everything. Not 0: an exit code; the reason is in `messages`.
+/// Runs everything. Returns 0, or another exit code after printing the reason to `messages`.
 [[nodiscard]] int run_paper_benchmark(const PaperBenchmarkOptions& options, PaperBenchmark& out,
                                       std::FILE* messages);
 
-/// Queries at which two methods differ about touching at all, and about the number of pairs.
+/// Number of queries with a different hit, and with a different number of touching pairs.
 struct Differences {
     std::size_t hits = 0, counts = 0;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The seed paper's tables, and ours beside them.
+// Prints the seed paper's tables next to ours.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -38,7 +38,7 @@ void print_times(const PaperBenchmark& benchmark, const std::vector<PaperSeries>
     fmt::print(words, "\n");
 }
 
-/// Averages divided; below 1 the GPU is the slower one.
+/// Ratios of averages; below 1, the second method of a column is the slower one.
 void print_factors(const PaperBenchmark& benchmark, std::FILE* words) {
     fmt::print(words,
                "\nby averages   CPU naive / GPU techniques   CPU naive / CPU engine   CPU engine / "
@@ -57,7 +57,7 @@ void print_factors(const PaperBenchmark& benchmark, std::FILE* words) {
          of_pose(benchmark, benchmark.gpu[1]).average);
 }
 
-/// The row of `series` beside the paper's: three times, each with the paper's over ours.
+/// Rows of `series` next to the paper's: three times, each with the ratio of the paper's to ours.
 void print_rows_beside(const PaperBenchmark& benchmark, const PaperSeries& series,
                        Spread PaperRow::*times, const char* title, std::FILE* words) {
     fmt::print(words, "\n{:<9} | {:^29} | {:^29} | {:^24}\n", "us", title, series.name,
@@ -82,7 +82,7 @@ void print_rows_beside(const PaperBenchmark& benchmark, const PaperSeries& serie
     line("sum", paper_sum(times), sum);
 }
 
-/// CPU over GPU, the averages divided: the paper's last column.
+/// Ratio of the averages, CPU over GPU: the paper's last column.
 void print_speed_ups(const PaperBenchmark& benchmark, std::FILE* words) {
     fmt::print(words, "\n{:<9}{:>18}{:>50}\n", "speed-up", "paper, CPU / GPU",
                "here, CPU naive / GPU techniques");
@@ -98,7 +98,7 @@ void print_speed_ups(const PaperBenchmark& benchmark, std::FILE* words) {
     fmt::print(words, "{:<9}{:>18.1f}{:>50.1f}\n", "mean", kPaperSpeedUp, mean);
 }
 
-/// All figures of the paper's tables 2 and 3. Its GPU half needs a GPU here for a column of ours.
+/// All figures of the paper's tables 2 and 3. Our GPU columns need a GPU on this host.
 void print_beside_paper(const PaperBenchmark& benchmark, std::FILE* words) {
     fmt::print(words,
                "\nthe seed paper's tables, pair by pair (its own shapes; a Tesla K20c and its "

@@ -11,16 +11,16 @@
 
 namespace axg {
 
-/// Of one pair over all poses.
+/// Times of one pair over all poses.
 [[nodiscard]] Spread of_pair(const PaperBenchmark& benchmark, const PaperSeries& series,
                              std::size_t pair);
-/// All pairs of a pose together.
+/// Times of a pose, summed over its pairs.
 [[nodiscard]] Spread of_pose(const PaperBenchmark& benchmark, const PaperSeries& series);
 
 [[nodiscard]] double per_pose(const PaperBenchmark& benchmark, const PaperSeries& series,
                               std::uint32_t paper::Found::*count);
 [[nodiscard]] std::size_t hits_of(const PaperSeries& series);
-/// "none", "all but carry", "boxes, unroll"; "coalesced" is by itself.
+/// "none", "all but carry", "boxes, unroll"; "coalesced" excludes the others.
 [[nodiscard]] std::string name_of(const paper::Techniques& techniques);
 [[nodiscard]] std::vector<const PaperSeries*> all_series(const PaperBenchmark& benchmark);
 

@@ -17,9 +17,9 @@
 namespace axg {
 namespace {
 
-constexpr std::uint32_t kPose = 5;  // of the sampled positions
+constexpr std::uint32_t kPose = 5;  // index of the sampled position
 
-/// Replies at once, and proves nothing: every box is cut until the budget is spent.
+/// Returns at once without a proof, so that the prover cuts boxes until the budget is spent.
 struct IdleEngine {
     std::uint64_t queries = 0, batches = 0;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// axguard-lab bench --pose: how long a cycle takes to pose its boxes, engine and containment tests
-// apart: a machine whose boxes are never proven, over an engine that replies at once.
+// axguard-lab bench --pose: measures how long a cycle takes to pose its boxes, without engine and
+// containment tests. Its engine returns at once and proves no box.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace axg {
 
 struct PoseBenchmarkOptions {
     std::string machine;
-    std::uint32_t passes = 25;  // the least counts
+    std::uint32_t passes = 25;  // reports the least time
     JsonOutput json;
 };
 

@@ -44,7 +44,7 @@ std::vector<Query> queries_of(const SceneFolder& scene, const SceneBenchmarkOpti
     return queries;
 }
 
-/// Cycle after cycle, unpaced; the clock runs around exactly one call of the engine.
+/// Runs cycle after cycle, unpaced. Each time covers exactly one call of the engine.
 void run_cycles(const Engine& engine, const std::vector<Query>& queries,
                 const SceneBenchmarkOptions& options, SceneMeasurement& out) {
     using Clock = std::chrono::steady_clock;

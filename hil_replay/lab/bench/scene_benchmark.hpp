@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long an engine takes for a cycle of queries, cycle after cycle, over the poses of a scene
-// folder. Every sample is kept; the table says how many there were and what a miss-free run of so
-// many shows.
+// Measures the time of an engine for a cycle of queries, cycle after cycle, over the poses of a
+// scene folder. Stores every sample; the table prints their number N and 3/N, the bound of the miss
+// rate after N cycles without a miss.
 #pragma once
 
 #include <cstdint>

@@ -127,7 +127,7 @@ std::string read_matrix(const CsvTable& table, std::size_t row, Pose& out) {
     return {};
 }
 
-/// The rotation nearest at hand (Gram-Schmidt); moves no unit vector by more than the defect.
+/// Changes to a near rotation (Gram-Schmidt); moves no unit vector by more than the defect.
 void make_rigid(Pose& p) {
     Vec3d column[3];
     for (int k = 0; k < 3; ++k) {
@@ -196,7 +196,7 @@ std::string read_poses(const CsvTable& table, const Names& bodies, SceneFolder& 
                            escaped(out.poses[at / out.bodies.size()]),
                            escaped(out.bodies[at % out.bodies.size()].name));
     }
-    if (defect > kDefectExact) {  // few digits: take the rotations meant, and answer for the rest
+    if (defect > kDefectExact) {  // few digits: use near rotations, bound the error
         std::for_each(out.placed.begin(), out.placed.end(), make_rigid);
         out.pose_error_mm = 4.0 * defect * (reach_of(out) + 1.0);
     }

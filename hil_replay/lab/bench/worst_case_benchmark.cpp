@@ -68,7 +68,7 @@ void print_columns(const std::vector<NamedMeasurement>& all, std::FILE* to) {
     fmt::print(to, "\n");
 }
 
-/// What is measured. False: the machine cannot be read.
+/// Makes the cycles to measure. False if the machine cannot be read.
 bool make_cycles(const WorstCaseBenchmarkOptions& options, std::vector<WorstCaseCycle>& cycles) {
     LoadedMachine loaded;
     std::uint32_t tree_levels = 2;

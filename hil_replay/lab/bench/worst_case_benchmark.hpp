@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// axguard-lab bench --worst-case: how long the worst-case batch, or the longest cycle of a plan,
-// takes on the GPU at hand, with the capacities and the levels of a machine.
+// axguard-lab bench --worst-case: measures the worst-case batch, or the longest cycle of a plan, on
+// this host's GPU, with the capacities and tree levels of a machine.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs that a hill climb of tests/property/core/collision/adversary_test.cpp ended at (seeds 1 to
-// 8, AXG_SEED), mm: triangles that meet and whose computed gap is the largest share of its bound,
-// and triangles that are apart, undecided in float, and the farthest apart.
+// Final pairs of the hill climb of tests/property/core/collision/adversary_test.cpp (seeds 1 to 8,
+// AXG_SEED), mm: intersecting triangles whose computed gap is the largest share of its bound, and
+// triangles that are undecided in float at the largest distance.
 #pragma once
 
 #include "hil_replay/lab/cases/pair.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random numbers that every compiler and processor draws alike: integer arithmetic, and of floating
-// point only what IEEE 754 rounds exactly. No distribution of <random>, whose results differ
-// between libraries. Source: splitmix64 (Steele, Lea, Flood 2014).
+// Random numbers that are the same from every compiler and processor: integer arithmetic, and only
+// those floating-point operations that IEEE 754 rounds exactly. No distribution of <random>: their
+// results differ between libraries. Source: splitmix64 (Steele, Lea, Flood 2014).
 #pragma once
 
 #include <cstdint>

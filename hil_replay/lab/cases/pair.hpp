@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One pair of closed triangles, mm, and what a method can say about it: a touch is an
+// One pair of closed triangles, mm, and the possible verdicts of a method: a touch is an
 // intersection.
 #pragma once
 
@@ -17,7 +17,7 @@ struct Pair {
 
 enum class Verdict : std::uint8_t { undecided = 0, separated, intersecting, rejected };
 
-/// Judges `count` pairs. distances_mm: null where nobody asks for them.
+/// Judges `count` pairs. distances_mm: null to skip the distances.
 template <class T>
 using JudgePairs = void (*)(const Pair<T>* pairs, std::size_t count, Verdict* verdicts,
                             double* distances_mm);

@@ -16,7 +16,7 @@ namespace {
 
 using Raw = Pair<double>;
 
-/// A signed permutation of the axes, now and then one that mirrors.
+/// A signed permutation of the axes; half of them mirror.
 void quarter_turn(Draw& draw, double (&r)[3][3]) {
     static constexpr int kOrders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1},
                                           {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
@@ -78,7 +78,7 @@ void whole_turn(Draw& draw, double (&r)[3][3], bool divided) {
     }
 }
 
-/// A about x, then C about z, in steps of a control.
+/// Rotation of C about z, then of A about x, in steps of 0.001 degrees.
 void trunnion_turn(Draw& draw, double (&r)[3][3]) {
     constexpr double kStepRad = kPi / 180e3;
     const SinCos a = sin_cos(kStepRad * (static_cast<double>(draw.below(220000)) - 110000));
@@ -142,7 +142,8 @@ void turn_vertices(Vec3d (&t)[3], std::uint32_t by) {
     }
 }
 
-/// Any order of the vertices and of the triangles; where one axis is promised, that order.
+/// Puts vertices and triangles in random order, or in the order that makes `axis` (if it is not
+/// negative) the only separating one.
 void order_vertices(Draw& draw, int axis, Raw& p) {
     if (axis < 0) {
         turn_vertices(p.a, draw.below(3));
@@ -175,7 +176,7 @@ double rounded_to_eighths(double x) {
     return std::floor(x * 8 + 0.5) / 8;
 }
 
-/// The shape scaled, turned and moved. Returns the direction of its gap.
+/// Scales, turns and moves the shape. Returns the direction of its gap.
 Vec3d place_pair(Draw& draw, const Category& c, Raw& p) {
     double r[3][3], offset[3] = {0, 0, 0};
     make_turn(draw, c.place, r);
@@ -211,8 +212,8 @@ T* coordinate_of(Pair<T>& p, std::uint32_t i) {
     return i % 3 == 0 ? &v.x : i % 3 == 1 ? &v.y : &v.z;
 }
 
-/// Moves vertices by up to three representable values, so that less a's first vertex they round
-/// apart along `normal`: b along it, a against it.
+/// Moves vertices by up to three representable values, so that relative to a's first vertex they
+/// round apart along `normal`: b along it, a against it.
 template <class T>
 void round_apart(Pair<T>& p, const Vec3d& normal) {
     const double push[3] = {normal.x, normal.y, normal.z};
@@ -237,7 +238,7 @@ void round_apart(Pair<T>& p, const Vec3d& normal) {
     }
 }
 
-/// Segments and points in place of triangles.
+/// Replaces triangles by segments and points.
 void flatten(int flat, Raw& p) {
     if (flat == 1 || flat == 3) {
         p.b[2] = p.b[1];
@@ -282,7 +283,7 @@ Pair<T> make_pair_case(std::size_t category, std::uint64_t seed, std::uint64_t i
     const unsigned finest = sizeof(T) == sizeof(float) ? 30 : 60;
     Raw raw = make_shape(draw, c, draw_gap(draw, c, finest));
     flatten(c.flat, raw);
-    if (!c.one_way) {  // round_apart wants a's first vertex where the shape put it
+    if (!c.one_way) {  // round_apart needs a's first vertex in its place of the shape
         order_vertices(draw, c.axis, raw);
     }
     const Vec3d normal = place_pair(draw, c, raw);

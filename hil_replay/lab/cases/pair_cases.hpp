@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pairs of triangles made to break a test of them, mm: contacts of every kind at gaps down to the
 // last bit, each of the seventeen axes as the only one that separates, thin, parallel, coplanar,
-// without area, tiny, subnormal, large, far from the origin, and what machines are made of. A pair
-// is a function of (category, seed, index) alone: the same bits from every compiler and processor.
+// without area, tiny, subnormal, large, far from the origin, and typical of machines. A pair
+// depends only on (category, seed, index): the same bits from every compiler and processor.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace axg::lab {
 
-/// A vertex p of a lies at pose * p in b's frame, with the matrix taken exactly as it is.
+/// A vertex p of a is at pose * p in b's frame, with the matrix exactly as given.
 struct PosedPair {
     Pair<float> pair;
     Pose pose;
@@ -22,8 +22,8 @@ struct PosedPair {
 [[nodiscard]] std::size_t pair_category_count() noexcept;
 [[nodiscard]] const char* pair_category_name(std::size_t category) noexcept;
 
-/// Which of the seventeen axes is the only one that separates the pairs of this category while
-/// their gap is small: 0 and 1 the normals of a and b, 2 + 3 i + j the product of a's edge i and
+/// The one of the seventeen axes that alone separates the pairs of this category while their gap
+/// is small: 0 and 1 the normals of a and b, 2 + 3 i + j the product of a's edge i and
 /// b's edge j, 11 + i and 14 + j the in-plane normals of those edges. -1: no such promise.
 [[nodiscard]] int pair_category_axis(std::size_t category) noexcept;
 
@@ -35,7 +35,7 @@ template <class T>
 extern template Pair<float> make_pair_case(std::size_t, std::uint64_t, std::uint64_t) noexcept;
 extern template Pair<double> make_pair_case(std::size_t, std::uint64_t, std::uint64_t) noexcept;
 
-/// The float pair with a carried by a body that stands somewhere else: a rounded in its own frame.
+/// The float pair with a on a body at a random pose: a is rounded in the frame of that body.
 [[nodiscard]] PosedPair make_posed_case(std::size_t category, std::uint64_t seed,
                                         std::uint64_t index) noexcept;
 

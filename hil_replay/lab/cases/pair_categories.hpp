@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table of the categories of pair_cases.hpp: what touches what, how near, and where the pair
-// stands. Sizes and offsets in mm.
+// The table of the categories of pair_cases.hpp: kind of contact, gap, and placement of the pair.
+// Sizes and offsets in mm.
 #pragma once
 
 namespace axg::lab {
 
-/// What touches what before a pair is turned and moved: nearest points at the origin and (0, 0,
-/// gap), a below, b above; in one plane (0, gap, 0), a at y <= 0. Sizes about 1.
+/// The contact before a pair is turned and moved: nearest points at the origin and (0, 0, gap), a
+/// below, b above; for shapes in one plane (0, gap, 0), a at y <= 0. Sizes about 1.
 enum class Shape {
     loose,  // anywhere
     pierced,
@@ -22,19 +22,19 @@ enum class Shape {
     flat_edges,   // one plane, edges on one line
     same,
     fan_edge,    // two neighbours of a fan
-    fan_vertex,  // two of a fan that share its hub alone
+    fan_vertex,  // two of a fan that share only its hub
     lattice,     // whole coordinates
     cad_faces,   // sides of two boxes on the micrometre grid
-    slot,        // a facet of a cutter beside the wall of its slot
-    climbed,     // where a hill climb ended
-    small_turn,  // a triangle and itself, turned by a step of a rotary axis
+    slot,        // a facet of a cutter next to the wall of its slot
+    climbed,     // a final pair of a hill climb
+    small_turn,  // a triangle and itself, turned by 1 to 100 steps of a rotary axis
 };
 
 enum class Gap {
     none,
     powers,      // 0 or 2^-k of the size, of either sign
     apart,       // 2^-k of the size, k from 11 to 22 (double: 37): truly apart
-    micrometre,  // 0 to 100 um, of either sign
+    micrometre,  // 2^-8 to 128 um, of either sign
 };
 
 enum class Place {
@@ -43,7 +43,7 @@ enum class Place {
     grid,      // as quarter, of coordinates rounded to eighths
     rational,  // an integer rotation, divided by its length: rounded
     scaled,    // an integer rotation, not divided: exact on whole coordinates
-    trunnion,  // two rotary axes in steps of 0.001 degrees, pivots, a travel
+    trunnion,  // two rotary axes in steps of 0.001 degrees, rounded
     as_is,
 };
 
@@ -58,7 +58,7 @@ struct Category {
     int angle_bits = -1;  // edges cross at an angle of 2^-bits or less, 99: 0; -1: any
     double offset_mm = 0;
     int nudges = 0;        // coordinates moved by one representable value at the end
-    bool one_way = false;  // vertices chosen so that less an origin they round apart
+    bool one_way = false;  // vertices chosen to round apart relative to an origin
     int flat = 0;          // 1: b is a segment, 2: a point, 3: both segments, 4: both points
     int axis = -1;         // pair_category_axis
 };
@@ -308,7 +308,7 @@ inline constexpr Category kCategories[] = {
      .size_mm = 1,
      .nudges = 1},
 
-    // Three vertices of a line, rounded: a normal of nothing but rounding, deep in a triangle.
+    // Three rounded vertices of a line, deep in a triangle: their normal is only rounding.
     {.name = "pierced by a rounded line", .shape = Shape::pierced, .size_mm = 100, .aspect = 1e-17},
 };
 

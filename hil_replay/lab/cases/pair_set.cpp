@@ -24,7 +24,7 @@ std::array<double, 18> coordinates_of(const Pair<double>& pair) noexcept {
     return out;
 }
 
-/// One coordinate of R q + t: three fused operations, three roundings. `weight` grows to the
+/// One coordinate of R q + t: three fused operations, three roundings. Raises `weight` to the
 /// largest sum of sizes, which bounds each of them.
 double placed_coordinate(const Pose& p, int k, const Vec3d& q, double& weight) noexcept {
     weight = std::max(weight, std::fabs(p.t[k]) + std::fabs(p.r[k][0] * q.x) +
@@ -58,7 +58,7 @@ float up(double d) noexcept {
     return static_cast<float>(d * (1.0 + 0x1p-22));
 }
 
-/// Rounded; beyond the range of float to the infinity that a plain conversion gives.
+/// Rounds to float; beyond its range to infinity, as a plain conversion does.
 Vec3f narrowed(const Vec3d& v) noexcept {
     return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
@@ -108,7 +108,7 @@ void PairSet::add(const Pair<double>& pair, const Pose& pose) {
     } else {
         fitness.push_back(weight <= kLabDomainMm ? raw : Fitness::outside);
     }
-    // Three roundings of 2^-53 of the weight each, and what underflow can cost.
+    // Three roundings of 2^-53 of the weight each, and a bound of underflow.
     put(placed, 0x1p-51 * weight + 0x1p-1000);
 }
 

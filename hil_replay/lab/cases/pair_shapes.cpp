@@ -13,7 +13,7 @@ namespace {
 
 using Raw = Pair<double>;
 
-// No expression holds two draws: which of two operands comes first is the compiler's choice.
+// No expression contains two draws: the compiler may evaluate operands in any order.
 
 /// Direction of b's edge against the x axis.
 void edge_direction(Draw& draw, int angle_bits, double& c, double& s) {
@@ -77,8 +77,8 @@ Raw cad_faces(Draw& draw) {
     return out;
 }
 
-/// A facet of a cutter of radius 4 mm beside the wall x = 4 mm, in coordinates of the category's
-/// size.
+/// A facet of a cutter of radius 4 mm next to the wall x = 4 mm + gap, in units of the category's
+/// size (10 mm).
 Raw slot(Draw& draw, double gap) {
     constexpr double kRadius = 0.4;
     const std::uint32_t count = 24 + 8 * draw.below(6), at = draw.below(2);

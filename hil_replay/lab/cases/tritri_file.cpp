@@ -22,7 +22,7 @@ constexpr std::size_t kFileBytesMax = std::size_t{1} << 29U;
 constexpr std::size_t kNameBytes = 32, kTriangleBytes = 9 * sizeof(float),
                       kPoseBytes = 12 * sizeof(double);
 
-/// The bytes from the front. Precondition of take: they are there.
+/// Reads bytes from the front. Precondition of take: at least that many bytes are left.
 class Bytes {
   public:
     explicit Bytes(std::string_view bytes) : bytes_(bytes) {}
@@ -212,7 +212,7 @@ std::string parse_tritri(std::string_view bytes, TritriFile& out) {
 }
 
 std::string read_tritri(const std::string& path, TritriFile& out) {
-    // As much room as the file takes; a file that grows meanwhile is refused.
+    // Limits the read to the file's present size: refuses a file that grows meanwhile.
     std::error_code ignored;
     const std::uintmax_t size_bytes = std::filesystem::is_regular_file(path, ignored)
                                           ? std::filesystem::file_size(path, ignored)

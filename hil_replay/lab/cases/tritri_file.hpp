@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files of cases for `axguard-lab accuracy`: pairs of triangles ('TTP1': float or double, with a
 // pose or without) and meshes at poses ('TTM1'). Little-endian, mm. Source of the format: README of
-// the folder tritri beside the project's data; docs/reference/commands.md repeats it.
+// the folder tritri next to the project's data; docs/reference/commands.md repeats it.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace axg::lab {
 
-/// Two meshes at a pose: a vertex q of b lies at R q + t in the frame of a.
+/// Two meshes at a pose: a vertex q of b is at R q + t in the frame of a.
 struct MeshCase {
     std::uint32_t a = 0, b = 0;
     Pose pose;
@@ -31,12 +31,12 @@ struct TritriFile {
     [[nodiscard]] bool holds_meshes() const noexcept { return !meshes.empty(); }
 };
 
-/// Takes the bytes of a file apart. Every length and count is checked against the bytes that are
-/// there before anything is reserved. Empty: read; else the fault as OFFSET: WHAT (found ..., ...),
-/// and `out` is of no use.
+/// Parses the bytes of a file. Checks every length and count against the bytes that are left before
+/// it reserves memory. Returns an empty text, or the fault as OFFSET: WHAT (found ..., ...); `out`
+/// is unusable then.
 [[nodiscard]] std::string parse_tritri(std::string_view bytes, TritriFile& out);
 
-/// The same from a file; a fault begins with its name.
+/// Reads and parses a file; a fault begins with its name.
 [[nodiscard]] std::string read_tritri(const std::string& path, TritriFile& out);
 
 }  // namespace axg::lab

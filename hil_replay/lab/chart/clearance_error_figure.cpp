@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reported clearance less the true distance: above zero, a method claims more than there is. The
-// engine on the paper's machine near contact, and with the exact cases of the folder tritri the
-// engine and the methods that give a distance, on its meshes.
+// Reported clearance less the true distance: above zero, a method claims more than the distance.
+// Measures the engine on the paper's machine near contact. With the exact cases of the folder
+// tritri, also measures the engine and the methods that compute a distance on its meshes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -42,7 +42,7 @@ Reported reported(std::string method, bool is_certified, const char* bodies, dou
     return {std::move(method), is_certified, bodies, truth_mm, 1e3 * (clearance_mm - truth_mm)};
 }
 
-/// Stands back from first contact by anything from a nanometre to a hand's breadth.
+/// A position 2^-20 to 2^6 mm (1 nm to 64 mm) back from first contact, within travel.
 AxisSnapshot near_contact(PosedMachine& posed, Draw& draw) {
     for (;;) {
         const std::size_t axis = posed.some_linear_axis(draw);
@@ -88,7 +88,7 @@ std::optional<CpuEngine> engine_for(const std::vector<Mesh>& meshes) {
     return CpuEngine::create(pointers, Capacities{});
 }
 
-/// mesh_answers.csv: the distance of every case that is apart, by its place in the file of cases.
+/// mesh_answers.csv: the distance of every case that is apart, by its index in the file of cases.
 std::string read_truth(const std::string& folder, const lab::TritriFile& file,
                        std::vector<double>& truth_mm) {
     CsvTable table;
@@ -183,7 +183,7 @@ std::string table_of(const std::vector<Reported>& all) {
     return out;
 }
 
-/// Float alone and the engine: what double computes lies too close to zero to be seen beside them.
+/// Draws the engine and the float methods only: errors of double are too close to zero to see.
 bool is_drawn(const ClearanceErrors& s) {
     return s.method == kEngine || s.method.ends_with("-f32");
 }

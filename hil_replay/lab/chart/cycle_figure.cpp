@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A whole cycle against what it loses: yes or no to contact beside other libraries, and a stop in
-// time. This host measures axguard's cycles; the rest comes from records (cycle-records.csv), each
-// row with its source.
+// Time of a whole cycle against its loss, in two panels: contact (yes or no), compared with other
+// libraries, and a stop in time. This host measures axguard's cycles; all others come from records
+// (cycle-records.csv), each row with its source.
 #include <fmt/format.h>
 
 #include <array>
@@ -21,11 +21,11 @@
 namespace axg::chart {
 namespace {
 
-constexpr double kExactMm = 0.01;  // what is exact is drawn there
+constexpr double kExactMm = 0.01;  // the place of exact methods
 constexpr std::array<std::string_view, 8> kColumns = {"panel", "name",     "kind",   "statistic",
                                                       "us",    "early_mm", "missed", "source"};
 
-/// Of axguard on this host.
+/// Times of axguard on this host.
 struct OwnTimes {
     double contact_us = 0, rest_us = 0, longest_us = 0;  // p99, p99, constructed
 };
@@ -56,7 +56,7 @@ bool measure(const Request& request, OwnTimes& out, std::string& fault) {
     return true;
 }
 
-/// A time of the table, or the name of one that is measured here.
+/// Reads a time of the table, or the name of a time measured on this host.
 bool read_us(std::string_view cell, const OwnTimes& own, double& us) {
     us = cell == "contact"   ? own.contact_us
          : cell == "rest"    ? own.rest_us
@@ -72,7 +72,7 @@ MarkStyle style_of(std::string_view kind) {
                                  : MarkStyle::other;
 }
 
-/// The table's row as a mark; its line goes to `table`, with the time that was measured.
+/// Adds the row as a mark to its panel, and as a line with the measured time to `table`.
 bool add_row(const CsvTable& records, std::size_t row, const OwnTimes& own, ScatterPanel& contact,
              ScatterPanel& stop, std::string& table) {
     double us = 0, early_mm = 0, missed = 0;

@@ -11,8 +11,8 @@
 namespace axg::chart {
 namespace {
 
-// Closest points as double computes them are within nanometres of the truth: a pair that seems
-// farther than the nearest by more than this is not the nearest.
+// Distances computed in double are within nanometres of the truth: a pair whose distance exceeds
+// the least by more than this is not the nearest.
 constexpr double kDoubtMm = 1e-3;
 
 struct Placed {
@@ -34,7 +34,7 @@ double box_gap(const Placed& a, const Placed& b) {
                      a.low.z - b.high.z, b.low.z - a.high.z});
 }
 
-/// As double sees it; 0 where the triangles, rounded in place, share a point.
+/// The distance computed in double; 0 if the placed, rounded triangles share a point.
 double about_mm(const Placed& a, const Placed& b) {
     lab::Pair<double> pair;
     sat::TrianglePair<double> p;

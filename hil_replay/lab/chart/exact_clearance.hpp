@@ -11,7 +11,7 @@
 namespace axg::chart {
 
 /// Distance of a placed at `pose` in b's frame, mm, rounded down; 0 where they touch. `within_mm`
-/// must not be less than it: pairs whose boxes are farther apart are not looked at.
+/// must be at least that distance: pairs whose boxes are farther apart are skipped.
 /// Cost: all pairs of boxes, then some 30 us for each pair of triangles within 1 um of the nearest.
 [[nodiscard]] double exact_clearance_mm(const std::vector<Triangle>& a, const Pose& pose,
                                         const std::vector<Triangle>& b, double within_mm);

@@ -47,7 +47,7 @@ std::vector<FailingCase> failing_cases(const MethodScore& score) {
     return out;
 }
 
-/// Two lines, a triangle each, as they may be pasted into a program.
+/// Two lines, one triangle each, to paste into a program.
 std::string format_pair(const lab::Pair<double>& pair) {
     std::string out;
     for (const Vec3d(*triangle)[3] : {&pair.a, &pair.b}) {
@@ -60,7 +60,7 @@ std::string format_pair(const lab::Pair<double>& pair) {
     return out;
 }
 
-/// Columns and rows of a map. Rows where no method shows anything are left out.
+/// Columns and rows of a map. Omits rows without a fault of any method.
 struct Layout {
     std::vector<const MethodScore*> columns;
     std::vector<std::size_t> rows;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The failure map: methods by categories of pairs, and the first failing case of each method in
-// hexadecimal floats, to be tried by hand.
+// hexadecimal floats, for manual tests.
 #pragma once
 
 #include <span>
@@ -10,7 +10,7 @@
 
 namespace axg::chart {
 
-/// One line a method and category where it missed, invented or left undecided anything.
+/// One line per method and category with a missed contact, a false hit or an undecided gap.
 [[nodiscard]] std::string failure_map_table(std::span<const MethodScore> scores);
 
 /// First and deepest missed contact, first and farthest false hit of every method, all eighteen
@@ -19,15 +19,15 @@ namespace axg::chart {
                                               const CaseBook& book,
                                               std::span<const lab::Method* const> methods);
 
-/// The same for people; methods compiled with contraction stay in the table.
+/// The same as readable text, without the methods compiled with contraction.
 [[nodiscard]] std::string format_failing_cases(std::span<const MethodScore> scores,
                                                const CaseBook& book,
                                                std::span<const lab::Method* const> methods);
 
-/// Contacts called separated.
+/// Map of the contacts that a method calls separated.
 [[nodiscard]] std::string missed_script(std::span<const MethodScore> scores,
                                         const std::string& beneath);
-/// Pairs apart that were called intersecting, or left undecided.
+/// Map of the pairs more than 1 um apart that a method calls intersecting or leaves undecided.
 [[nodiscard]] std::string not_told_apart_script(std::span<const MethodScore> scores,
                                                 const std::string& beneath);
 

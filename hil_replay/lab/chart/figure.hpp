@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A figure of `axguard-lab chart` before it is written: tables, a gnuplot script over them, and
-// what to say about it. Measuring a figure touches no file.
+// A figure of `axguard-lab chart` before it is written: tables, a gnuplot script that
+// draws them, and a summary. Measuring a figure writes no file.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +9,12 @@
 
 namespace axg::chart {
 
-/// What the figures are measured on.
+/// Inputs of the measurements.
 struct Request {
     std::uint64_t seed = 1;
     bool is_quick = false;
     std::string data;    // holds config/machines/, see AXG_DATA_DIR
-    std::string tritri;  // meshes.bin and mesh_answers.csv of exact cases; empty: there are none
+    std::string tritri;  // meshes.bin and mesh_answers.csv of exact cases; empty: none
 };
 
 struct Table {
@@ -24,11 +24,11 @@ struct Table {
 
 struct Figure {
     std::string name{};           // NAME.gp draws NAME.svg and NAME.png
-    std::vector<Table> tables{};  // what the script reads
+    std::vector<Table> tables{};  // input of the script
     std::string script{};
     std::string summary{};  // counts and times, for --json; empty: none
-    std::string words{};    // for people; lines, each with its end
-    std::string fault{};    // not empty: nothing was measured, and why
+    std::string words{};    // readable text; each line ends with \n
+    std::string fault{};    // why the measurement failed; empty: success
 };
 
 }  // namespace axg::chart

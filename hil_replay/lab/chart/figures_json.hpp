@@ -13,7 +13,7 @@ namespace axg::chart {
 [[nodiscard]] std::string describe_methods(const std::vector<MethodScore>& scores, unsigned passes,
                                            const std::string& processor);
 
-/// Of one method's clearances.
+/// Errors of one method's clearances.
 struct ClearanceErrors {
     std::string method;
     bool is_certified = false;
@@ -22,7 +22,7 @@ struct ClearanceErrors {
 };
 [[nodiscard]] std::string describe_clearance_errors(const std::vector<ClearanceErrors>& methods);
 
-/// Of one method, over all frames.
+/// Verdict changes of one method, summed over all frames.
 struct FlipTotals {
     std::string method;
     bool is_certified = false;
@@ -31,7 +31,7 @@ struct FlipTotals {
 [[nodiscard]] std::string describe_flips(const std::vector<FlipTotals>& methods, std::size_t pairs,
                                          std::size_t orders);
 
-/// The neediest query of a family of cycles.
+/// The query with most rechecks in a family of cycles.
 struct RecheckNeeds {
     std::string family, pair, axes;
     std::uint64_t cycles = 0;
@@ -41,7 +41,7 @@ struct RecheckNeeds {
 [[nodiscard]] std::string describe_rechecks(std::uint32_t capacity,
                                             const std::vector<RecheckNeeds>& families);
 
-/// Of one method and one aspect of its triangles.
+/// Gaps that one method leaves undecided at one aspect ratio of triangles.
 struct UndecidedGap {
     std::string method;
     double aspect = 1;

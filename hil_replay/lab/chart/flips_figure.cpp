@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a verdict depends on how the pair is handed over: the 72 orders of its vertices and
-// triangles, in four frames. An answer that depends on them is an answer about rounding.
+// Whether a verdict depends on the representation of a pair: the 72 orders of its vertices and
+// triangles, in four frames. A verdict that depends on them is an effect of rounding.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,14 +26,14 @@ using lab::Draw;
 enum Frame : std::size_t { kAsIs, kQuarterTurn, kOffset, kTurned, kFrames };
 constexpr std::array<const char*, kFrames> kFrameNames = {"as it is", "quarter turn", "1.5 m away",
                                                           "turned"};
-constexpr std::size_t kOrders = 72;  // six orders of either triangle's vertices, either one first
+constexpr std::size_t kOrders = 72;  // 6 * 6 orders of the vertices, 2 of the triangles
 constexpr unsigned kRowPx = 22, kCellPx = 72, kLeftPx = 190, kRightPx = 20, kTopPx = 150,
                    kBottomPx = 50;
 
-/// Of one method in one frame, in pairs.
+/// Numbers of pairs for one method in one frame.
 struct Flips {
     std::uint64_t pairs = 0;
-    std::uint64_t differing = 0;  // not one verdict for all orders
+    std::uint64_t differing = 0;  // several verdicts over all orders
     std::uint64_t wrong = 0;      // called separated in some order, though they touch
 };
 
@@ -43,7 +43,7 @@ struct MethodFlips {
     std::array<Flips, kFrames> frames{};
 };
 
-/// Coordinates as T holds them.
+/// Rounds the coordinates to T.
 template <class T>
 lab::Pair<double> rounded(const lab::Pair<double>& pair) {
     lab::Pair<double> out;
@@ -55,7 +55,7 @@ lab::Pair<double> rounded(const lab::Pair<double>& pair) {
     return out;
 }
 
-/// The pose of a frame. Quarter turns only swap coordinates and signs: they round nothing.
+/// The pose of a frame. Quarter turns only swap coordinates and signs, without rounding.
 Pose pose_of(Frame frame, Draw& draw) {
     Pose pose;
     if (frame == kQuarterTurn) {
@@ -109,10 +109,10 @@ void add_orders(const lab::Pair<double>& pair, lab::PairSet& out) {
     }
 }
 
-/// The same pairs in one frame, each in its 72 orders, with the truth about what rounding left.
+/// The same pairs in one frame, each in its 72 orders, with the truth about the rounded pair.
 struct FrameSet {
     lab::PairSet pairs;
-    std::vector<bool> touches;  // one of each 72
+    std::vector<bool> touches;  // one for each 72 orders
 };
 
 template <class T>
@@ -165,7 +165,7 @@ std::string table_of(const std::vector<MethodFlips>& all) {
     return out;
 }
 
-/// A row: a method as the project is compiled, and beside it with contraction where there is one.
+/// A row: a method compiled like the project, and its build with contraction if there is one.
 struct Row {
     const MethodFlips *plain = nullptr, *fused = nullptr;
 };
@@ -187,7 +187,7 @@ std::vector<Row> rows_of(const std::vector<MethodFlips>& all) {
 
 constexpr std::size_t kColumns = 2 * (kFrames + 1);
 
-/// The cells of the picture: column, row, count, percent.
+/// The cells of the figure: column, row, count, percent.
 std::string cells_of(const std::vector<Row>& rows) {
     std::string out = "$cells << END\n";
     for (std::size_t row = 0; row < rows.size(); ++row) {

@@ -16,7 +16,7 @@
 namespace axg::chart {
 namespace {
 
-/// Boxes and spheres are filters: what they cannot tell has no end.
+/// Omits boxes and spheres: they are filters, and no bound limits the gaps they leave undecided.
 std::vector<const lab::Method*> methods_to_chart() {
     std::vector<const lab::Method*> out;
     for (const lab::Method& method : lab::methods()) {

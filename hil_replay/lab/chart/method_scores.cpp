@@ -12,12 +12,12 @@
 namespace axg::chart {
 namespace {
 
-using Wide = long double;  // the depth of a touch is next to nothing: no digit too many
+using Wide = long double;  // the depth of a touch is near 0 and needs every digit
 using WidePoint = Vec3<Wide>;
 
 constexpr double kUmPerMm = 1e3;
 
-/// How far the projections overlap along an axis, per unit of its length; huge where it has none.
+/// Overlap of the projections along an axis, per unit of its length; the maximum for a zero axis.
 Wide overlap_along(const WidePoint& axis, const WidePoint (&a)[3], const WidePoint (&b)[3]) {
     const Wide length = std::sqrt(dot(axis, axis));
     if (!(length > 0)) {
@@ -32,8 +32,8 @@ Wide overlap_along(const WidePoint& axis, const WidePoint (&a)[3], const WidePoi
     return std::min(high_a - low_b, high_b - low_a) / length;
 }
 
-/// Smallest overlap over the seventeen axes: how far one would have to be moved, by one of these
-/// directions, to come free. 0 where none of them is a direction: points, segments on one line.
+/// Smallest overlap over the seventeen axes: the shortest move along one of them that separates
+/// the triangles. 0 if all axes are zero: points, segments on one line.
 double depth_um(const lab::Pair<double>& pair) {
     WidePoint a[3], b[3], ea[3], eb[3];
     const auto local = [&pair](const Vec3d& v) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the methods of the laboratory come to on pairs of triangles whose exact answers are known.
+// Scores of the laboratory's methods on pairs of triangles with results from exact arithmetic.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace axg::chart {
 
-/// From exact arithmetic; the depth alone is rounded.
+/// From exact arithmetic. The distance is rounded; the depth is computed in long double.
 struct Truth {
     bool intersects = false;
     double distance_um = 0;
@@ -29,7 +29,7 @@ struct Cases {
     std::vector<bool> machine_like;
 };
 
-/// The same draws in what the methods compute in: a method is judged on numbers that it can hold.
+/// The same draws in float and in double: each method gets numbers that its type represents.
 struct CaseBook {
     Cases f32, f64;
     std::size_t per_category = 0;
@@ -45,7 +45,7 @@ struct CaseBook {
 /// than 1 um.
 [[nodiscard]] bool is_machine_like(const lab::Pair<double>& pair);
 
-/// Of one category, or of several. Lengths in um.
+/// Counts for one category, or for several. Lengths in um.
 struct Score {
     std::uint64_t intersecting = 0, apart = 0;
     std::uint64_t missed = 0;  // intersecting, called separated
@@ -54,7 +54,7 @@ struct Score {
     double farthest_false_hit_um = 0;
     std::uint64_t undecided_hits = 0, undecided_apart = 0;
     double widest_undecided_um = 0;  // of those apart
-    // Of those more than 1 um apart: what a machine tool can tell.
+    // Pairs more than 1 um apart: a distance that a machine tool resolves.
     std::uint64_t far = 0, far_false_hits = 0, far_undecided = 0;
 };
 
@@ -63,9 +63,9 @@ inline constexpr std::size_t kNoCase = SIZE_MAX;
 struct MethodScore {
     std::string name;
     bool is_certified = false, is_fused = false;
-    Score machine;                   // of the pairs that are machine-like
-    std::vector<Score> by_category;  // of all
-    // Of the pairs that are machine-like.
+    Score machine;                   // machine-like pairs only
+    std::vector<Score> by_category;  // all pairs
+    // Indices of machine-like pairs.
     std::size_t first_missed = kNoCase, deepest_missed = kNoCase, first_false_hit = kNoCase,
                 farthest_false_hit = kNoCase;
     double ns_touching = 0, ns_apart = 0;  // mean of a pair, least of the passes
@@ -73,8 +73,8 @@ struct MethodScore {
 
 [[nodiscard]] MethodScore score_of(const lab::Method& method, const CaseBook& book);
 
-/// Fills the times: passes over all methods in turn, so that a disturbance hits all alike; of each
-/// the least.
+/// Fills the times: each pass runs every method once, so that a disturbance affects all methods
+/// alike. Stores each method's least time.
 void time_methods(const CaseBook& book, const std::vector<const lab::Method*>& methods,
                   unsigned passes, std::vector<MethodScore>& scores);
 

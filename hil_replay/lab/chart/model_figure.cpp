@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a shorter cycle costs: levels of detail of two machines, from the records of
-// docs/measurements/levels.md. Each point that takes longer than a finer one is found and named.
+// The cost of a shorter cycle: model details of two machines, from the records of
+// docs/measurements/levels.md. Labels each point that is slower than a finer one ("bends back").
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace axg::chart {
 namespace {
 
-constexpr double kNotEarlierMm = 0.03;  // the whole model is drawn there
+constexpr double kNotEarlierMm = 0.03;  // the place of the whole model
 constexpr std::array<std::string_view, 5> kColumns = {"simplify_mm", "triangles", "rest_p99_us",
                                                       "contact_lost", "earlier_mm_p50"};
 
@@ -24,7 +24,7 @@ std::string with_thousands(double count) {
                         : fmt::format("{},{:03}", whole / 1000, whole % 1000);
 }
 
-/// Rows from fine to coarse. False: `fault` says where and what to do.
+/// Adds the rows, from fine to coarse. False on failure, with place and remedy in `fault`.
 bool add_levels(const Request& request, const char* machine, const char* file, ScatterPanel& panel,
                 std::string& table, std::string& fault) {
     CsvTable levels;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::array<double, 9> kAwayPx = {4, 10, 18, 28, 40, 55, 75, 100, 130};
 constexpr int kDirections = 24;
-constexpr double kLeaderPx = 14;  // beyond that the eye needs a line from mark to words
+constexpr double kLeaderPx = 14;  // beyond it, a line from mark to text is needed
 
 LabelBox box_of(const Label& label) {
     return {label.text_left, label.text_mid - label.height / 2, label.text_left + label.width,
@@ -29,7 +29,7 @@ double outside(const LabelBox& box, const LabelBox& frame) {
     return (box.right - box.left) * (box.top - box.bottom) - overlap(box, frame);
 }
 
-/// The box of the words slides around the mark: its nearest point lies `away` from the mark's rim.
+/// Moves the label's box around the mark, its nearest point about `away` px from the mark's centre.
 void put(Label& label, int direction, double away) {
     constexpr double kTurn = 6.283185307179586 / kDirections;
     const double c = std::cos(direction * kTurn), s = std::sin(direction * kTurn);
@@ -38,7 +38,7 @@ void put(Label& label, int direction, double away) {
     label.text_mid = label.y + away * s + label.height / 2 * std::clamp(2 * s, -1.0, 1.0);
 }
 
-/// Area of `box` that lies on something, or outside the frame.
+/// Overlap of `box` with all `taken` boxes, plus twice its area outside the frame.
 double fault_of(const LabelBox& box, const LabelBox& frame, const std::vector<LabelBox>& taken) {
     double fault = 2 * outside(box, frame);
     for (const LabelBox& other : taken) {
@@ -52,7 +52,7 @@ double distance(const LabelBox& box, double x, double y) {
                       std::max({box.bottom - y, y - box.top, 0.0}));
 }
 
-/// Whether another mark is about as near to the words as their own.
+/// Whether another mark is about as near to the label as its own.
 bool is_near_another(const std::vector<Label>& labels, const Label& label) {
     const LabelBox box = box_of(label);
     const double own = distance(box, label.x, label.y);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the words beside the marks of a crowded picture go, so that none lies on another: pixels,
-// y upwards. Greedy: each takes the free place nearest to its mark, the most crowded mark first.
+// Places the labels of a crowded figure without overlap; pixels, y upwards. Greedy: each label gets
+// the free place nearest to its mark, the most crowded mark first.
 #pragma once
 
 #include <span>
@@ -14,13 +14,13 @@ struct LabelBox {
 
 struct Label {
     double x = 0, y = 0;                 // the mark
-    double width = 0, height = 0;        // of the words
-    double text_left = 0, text_mid = 0;  // out: left end and middle height of the words
-    bool is_away = false;                // out: so far off that a line should lead there
+    double width = 0, height = 0;        // of the label's text
+    double text_left = 0, text_mid = 0;  // out: left end and middle height of the text
+    bool is_away = false;                // out: needs a line from the mark to the text
 };
 
-/// Places every label inside `frame`, off the marks, off what is `taken` and off each other where
-/// there is room. Cost: labels times (labels + taken) times some two hundred candidate places.
+/// Places every label inside `frame`, off the marks, the occupied boxes `taken` and other labels
+/// where possible. Cost: labels * (labels + occupied boxes) * 216 candidate places.
 void place_labels(std::vector<Label>& labels, const LabelBox& frame, double mark_radius,
                   std::span<const LabelBox> taken);
 

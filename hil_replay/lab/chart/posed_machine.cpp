@@ -78,7 +78,7 @@ bool PosedMachine::is_clear(const AxisSnapshot& snapshot) {
 
 std::optional<AxisSnapshot> PosedMachine::last_clear(AxisSnapshot snapshot, std::size_t axis,
                                                      bool upwards) {
-    constexpr double kStepMm = 4;  // may pass through something thin: then it is another contact
+    constexpr double kStepMm = 4;  // may skip a thin body and find a later contact
     if (!is_clear(snapshot)) {
         return std::nullopt;
     }

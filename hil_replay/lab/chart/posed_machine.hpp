@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A machine with its engine, put at positions worth measuring: anywhere, at first contact, at
-// quarter turns where faces lie flat on faces.
+// A machine with its engine at positions for measurements: random, at first contact, or at quarter
+// turns where faces touch flat.
 #pragma once
 
 #include <cstddef>
@@ -26,32 +26,32 @@ class PosedMachine {
     PosedMachine(const PosedMachine&) = delete;  // it points into itself
     PosedMachine& operator=(const PosedMachine&) = delete;
 
-    /// Reads MACHINE and makes an engine with `capacities`. Null: `fault` says why.
+    /// Reads MACHINE and makes an engine with `capacities`. Null on failure, see `fault`.
     [[nodiscard]] static std::unique_ptr<PosedMachine> load(const std::string& file,
                                                             const Capacities& capacities,
                                                             std::string& fault);
 
     [[nodiscard]] const Machine& machine() const noexcept { return loaded_.machine; }
-    /// By its number in queries.
+    /// The surface with this mesh number in queries.
     [[nodiscard]] const Mesh& mesh(std::uint32_t index) const noexcept { return *surfaces_[index]; }
     [[nodiscard]] CpuEngine& engine() noexcept { return engine_; }
-    /// The cycle's queries there; valid until the next call.
+    /// The cycle's queries at `snapshot`; valid until the next call.
     [[nodiscard]] PairQueries& pair_queries(const AxisSnapshot& snapshot);
     [[nodiscard]] std::string pair_name(std::uint32_t pair) const;
 
     [[nodiscard]] AxisSnapshot anywhere(lab::Draw& draw) const;
-    /// Rotary axes at quarter turns, linear ones at whole millimetres.
+    /// Rotary axes at quarter turns, linear ones at whole millimetres; 0 if that leaves the travel.
     [[nodiscard]] AxisSnapshot square(lab::Draw& draw) const;
     /// Whether every checked pair is proven apart.
     [[nodiscard]] bool is_clear(const AxisSnapshot& snapshot);
-    /// From a clear position along a linear axis to the last double that is clear. Empty: not
-    /// clear at first, or nothing in the way.
+    /// Moves from a clear position along a linear axis to the last double that is clear. Empty:
+    /// the start is not clear, or the travel ends before a contact.
     [[nodiscard]] std::optional<AxisSnapshot> last_clear(AxisSnapshot snapshot, std::size_t axis,
                                                          bool upwards);
     [[nodiscard]] std::size_t some_linear_axis(lab::Draw& draw) const;
     /// Within travel; an endless axis within one turn.
     [[nodiscard]] double within_travel(std::size_t axis, double position) const;
-    /// "X 1 Y 2": mm and degrees, enough digits to stand there again.
+    /// "X 1, Y 2": mm and degrees with 9 significant digits, to move there again.
     [[nodiscard]] std::string format_position(const AxisSnapshot& snapshot) const;
 
   private:

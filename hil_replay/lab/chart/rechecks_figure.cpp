@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How many pairs of triangles float leaves to double in one query, against the list that must
-// hold them. On the paper's machine: anywhere, near contact, sliding, and where a climb found most.
+// Number of triangle pairs that float leaves to double in one query, against the capacity of their
+// list. On the paper's machine: random, near contact, sliding, and after a climb to the most.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,11 +26,11 @@ constexpr std::array<const char*, kFamilies> kNames = {"anywhere", "near contact
                                                        "climb to the most"};
 // Bin 0: none; bin i: from 2^(i-1) to 2^i - 1.
 constexpr std::size_t kBins = 15;
-// No list overflows in these: what a query would need is what is counted.
+// So large that no list overflows: each count is the need of a query.
 constexpr Capacities kRoomy{
     .node_pairs = 1U << 18U, .triangle_pairs = 1U << 24U, .rechecks = 1U << 20U};
 
-/// The query of a cycle that needs most rechecks, and where the machine stands.
+/// The query of a cycle that needs most rechecks, and the machine's position.
 struct Need {
     std::uint32_t rechecks = 0, touching = 0, pair = 0;
     AxisSnapshot snapshot;
@@ -51,7 +51,7 @@ struct Counts {
     }
 };
 
-/// Every pair is queried for all its touching triangles: no early end hides a recheck.
+/// Queries every pair for all its touching triangles, so that no early end hides a recheck.
 Need need_at(PosedMachine& posed, const AxisSnapshot& snapshot) {
     PairQueries& pair_queries = posed.pair_queries(snapshot);
     Need need{.snapshot = snapshot};
@@ -69,7 +69,7 @@ Need need_at(PosedMachine& posed, const AxisSnapshot& snapshot) {
     return need;
 }
 
-/// Where an approach along one linear axis ends; squarely on quarter turns, or anyhow.
+/// The end of an approach along one linear axis, from quarter turns or from a random position.
 AxisSnapshot contact(PosedMachine& posed, Draw& draw, bool squarely, std::size_t& axis) {
     for (;;) {
         axis = posed.some_linear_axis(draw);
@@ -89,7 +89,7 @@ AxisSnapshot near_contact(PosedMachine& posed, Draw& draw) {
     return snapshot;
 }
 
-/// Flat on flat, or a rounding above: then the other linear axes slide by whole millimetres.
+/// From flat faces within a rounding of contact, slides the other linear axes by whole millimetres.
 AxisSnapshot sliding(PosedMachine& posed, Draw& draw) {
     std::size_t axis = 0;
     AxisSnapshot snapshot = contact(posed, draw, true, axis);
@@ -102,7 +102,8 @@ AxisSnapshot sliding(PosedMachine& posed, Draw& draw) {
     return snapshot;
 }
 
-/// Steps of every size from where most were found; a step is kept unless it loses.
+/// Random steps of 2^-36 to 2^5 from the worst position so far and from sliding positions, in turn.
+/// Continues from a step unless it needs fewer rechecks.
 void climb(PosedMachine& posed, Draw& draw, Counts& counts, std::uint64_t steps) {
     constexpr int kStarts = 8;
     for (int start = 0; start < kStarts; ++start) {

@@ -33,7 +33,7 @@ const Look& look_of(MarkStyle style) {
     return kLooks[static_cast<std::size_t>(style)];
 }
 
-/// Letters, of which UTF-8 may need more bytes.
+/// Number of letters; UTF-8 may need several bytes for one.
 std::size_t letters_in(const std::string& words) {
     return static_cast<std::size_t>(std::count_if(words.begin(), words.end(), [](char c) {
         return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U;
@@ -60,7 +60,7 @@ struct PanelDrawer {
                 (panel.bottom + up * (panel.top - panel.bottom)) * picture.size.height};
     }
 
-    /// Stepping stones for words to stay off a line.
+    /// Adds small boxes along a line, so that no label covers it.
     static void add_line(std::vector<LabelBox>& taken, const Place& a, const Place& b) {
         constexpr int kSteps = 60;
         for (int step = 0; step <= kSteps; ++step) {
@@ -85,7 +85,7 @@ struct PanelDrawer {
             add_line(taken, {b.x, a.y}, b);
         }
         for (const ScatterMark& mark : panel.marks) {
-            if (mark.words.empty()) {  // the others' are added with their words
+            if (mark.words.empty()) {  // place_labels() adds the labelled marks
                 const Place at = place_of(mark.x, mark.y);
                 taken.push_back({at.x - kMarkPx, at.y - kMarkPx, at.x + kMarkPx, at.y + kMarkPx});
             }
@@ -193,7 +193,7 @@ std::string data_of(const ScatterPanel& panel, std::size_t number) {
     out += fmt::format("EOD\n$pareto{} << EOD\n", number);
     for (std::size_t i = 0; i < panel.pareto.size(); ++i) {
         const ScatterMark& at = panel.marks[panel.pareto[i]];
-        if (i > 0) {  // a step: until the next one there is nothing better
+        if (i > 0) {  // a step: no mark is better up to the next one
             out += fmt::format("{:.6g},{:.6g}\n", at.x, panel.marks[panel.pareto[i - 1]].y);
         }
         out += fmt::format("{:.6g},{:.6g}\n", at.x, at.y);
@@ -229,7 +229,7 @@ std::string panel_of(const ScatterPicture& picture, std::size_t number) {
     return out + "\nunset label; unset arrow\n";
 }
 
-/// One line each, below the title.
+/// One line per style, below the title.
 std::string legend_of(const ScatterPicture& picture) {
     std::string out;
     double y = 1 - 44.0 / picture.size.height;

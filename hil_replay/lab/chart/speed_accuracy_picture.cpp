@@ -15,10 +15,10 @@
 namespace axg::chart {
 namespace {
 
-// Less is drawn there: a depth that double rounds away, and nothing at all.
+// Smallest depth drawn (double rounds smaller ones away), the place of "none", the upper end.
 constexpr double kLeastUm = 1e-9, kNoneUm = 1e-11, kMostUm = 1e6;
 
-/// What a method is called beside its mark. The rest keep their own name.
+/// Labels of methods. Any other method's label is its kernel's name.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 16> kWords = {{
     {"certified-shared-f32", "axguard stage 1"},
     {"certified-f32", "axguard float"},
@@ -38,7 +38,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 16> kWords =
     {"exact", "exact"},
 }};
 
-/// The worst of two means: contacts, where no early end helps, and pairs apart.
+/// The larger of two means: contacts, which allow no early end, and pairs apart.
 double ns_of(const MethodScore& m) {
     return std::max(m.ns_touching, m.ns_apart);
 }
@@ -47,7 +47,7 @@ double drawn(double um, bool is_any) {
     return is_any ? std::max(um, kLeastUm) : kNoneUm;
 }
 
-/// Name without arithmetic and contraction.
+/// The name without the suffixes for arithmetic and contraction.
 std::string_view kernel_of(std::string_view name) {
     return name.substr(0, std::min(name.find("-f32"), name.find("-f64")));
 }
@@ -65,7 +65,7 @@ std::string words_of(const MethodScore& m) {
     return std::string(kernel_of(m.name));
 }
 
-/// As fast as this processor can run them: with FMA where there is such a unit.
+/// The fastest build of each method on this processor: with FMA if the processor has it.
 std::vector<const MethodScore*> to_draw(std::span<const MethodScore> scores) {
     const bool has_fused =
         std::any_of(scores.begin(), scores.end(), [](const MethodScore& m) { return m.is_fused; });
@@ -110,7 +110,7 @@ std::string missed_words(const MethodScore& m) {
                                  : fmt::format("{} {}", words_of(m), m.machine.missed);
 }
 
-/// Undecided, or called a contact: either way a guard would stop.
+/// Widest gap left undecided or called a contact: a guard stops in both cases.
 double gap_um(const MethodScore& m) {
     return drawn(std::max(m.machine.widest_undecided_um, m.machine.farthest_false_hit_um),
                  m.machine.undecided_apart + m.machine.false_hits > 0);

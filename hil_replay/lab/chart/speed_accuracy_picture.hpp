@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The picture of speed against accuracy, in two panels: contacts missed, which is the danger, and
-// gaps undecided or called contacts, which is the cost. Right is slower, up is worse.
+// The figure of speed against accuracy, in two panels: missed contacts (the danger), and gaps left
+// undecided or called contacts (the cost). Right is slower, up is worse.
 #pragma once
 
 #include <span>
@@ -10,10 +10,10 @@
 
 namespace axg::chart {
 
-/// The table's text: one line a method.
+/// The table's text: one line per method.
 [[nodiscard]] std::string speed_accuracy_table(std::span<const MethodScore> scores);
 
-/// @param cases, machine  two lines under the picture: on what it was measured
+/// @param cases, machine  two lines under the figure: measured pairs and processor
 [[nodiscard]] std::string speed_accuracy_script(std::span<const MethodScore> scores,
                                                 const std::string& cases,
                                                 const std::string& machine);

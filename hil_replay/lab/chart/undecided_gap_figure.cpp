@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which share of pairs the certified methods leave undecided, against the true gap: a step whose
-// foot is the band, and which thin triangles must not move. Pairs of 100 mm, vertex against face,
-// edge against edge, vertex against edge and vertex against vertex; the gap is drawn, the pair
-// turned and rounded to float, and what then is the gap comes from exact arithmetic.
+// Share of pairs that the certified methods leave undecided, against the true gap: a step whose
+// foot is the undecided band, and which thin triangles must not move. Pairs of 100 mm: vertex and
+// face, edge and edge, vertex and edge, vertex and vertex. Draws a gap, turns the pair, rounds it
+// to float, and computes the true gap of the result in exact arithmetic.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ using lab::Draw;
 constexpr PictureSize kSize{1000, 600};
 constexpr double kSizeMm = 100;
 constexpr std::array<double, 3> kAspects = {1, 1e2, 1e4};
-// Of the true gap, in um: 1e-3 to 1e3 in quarters of a decade.
+// Bins of the true gap: 1e-3 to 1e3 um in quarters of a decade.
 constexpr double kLeastUm = 1e-3;
 constexpr int kBinsADecade = 4;
 constexpr int kBins = 6 * kBinsADecade;
@@ -42,8 +42,8 @@ struct Curve {
     double widest_undecided_um = 0;
 };
 
-/// A turn about an axis drawn from a cube, by Rodrigues' formula as a product of two mirrors:
-/// rigid to some 2^-52, which is all that is needed here.
+/// Mirrors v in the plane with normal n. Two mirrors with normals drawn from a cube make a turn
+/// (Rodrigues' formula), rigid to about 2^-52, which is enough here.
 Vec3d mirrored(const Vec3d& v, const Vec3d& n) {
     return v - (2 * dot(n, v) / dot(n, n)) * n;
 }

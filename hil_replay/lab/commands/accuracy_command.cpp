@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// axguard-lab accuracy: a file of cases judged by one method, one line each. Says nothing about who
-// is right: that is for whoever has the exact answers.
+// axguard-lab accuracy: one method judges a file of cases, one line each. Does not check the
+// verdicts: that needs the exact results.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -59,7 +59,7 @@ const lab::Method* method_of(const std::string& name) {
 constexpr std::size_t kTimedPairs = 16384;
 constexpr std::uint64_t kTimedSeed = 20261121;
 
-/// ns a pair of one method or of all, on the same random pairs.
+/// Measures ns per pair of one method or of all, on the same random pairs.
 int time_them(const AccuracyOptions& options) {
     std::vector<const lab::Method*> timed;
     for (const lab::Method& method : lab::methods()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// axguard-lab bench: measures this machine. Ends with 0 whatever it finds.
+// axguard-lab bench: measures this computer. The measured times do not affect the exit code.
 #include <fmt/format.h>
 
 #include <memory>
@@ -34,7 +34,7 @@ struct BenchOptions {
     JsonOutput json;
 };
 
-/// With --worst-case: of a machine's plan on this processor, or of a GPU's batch.
+/// Runs --worst-case: a machine's plan on this processor, or batches or a plan on a GPU.
 int run_worst_case(const BenchOptions& options) {
     const std::string usual = options.experiment.data + "/config/machines/paper-trunnion.yaml";
     if (options.engine != "cpu") {

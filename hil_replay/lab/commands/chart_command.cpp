@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// axguard-lab chart: measures what the methods tell and what they cost, and writes tables, gnuplot
-// scripts and pictures.
+// axguard-lab chart: measures verdicts and times of the methods and writes tables, gnuplot scripts
+// and figures.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -62,7 +62,7 @@ constexpr Step kSteps[] = {
     {"flips", &one<&chart::flips_figure>},
 };
 
-/// Tables and script under their names. False: stderr says why.
+/// Writes the tables and the script. False on failure, with the reason on stderr.
 bool write_figure(const std::filesystem::path& folder, const Figure& figure) {
     for (const chart::Table& table : figure.tables) {
         if (!write_whole_file((folder / table.file).string(), table.text, stderr)) {
@@ -72,7 +72,7 @@ bool write_figure(const std::filesystem::path& folder, const Figure& figure) {
     return write_whole_file((folder / (figure.name + ".gp")).string(), figure.script, stderr);
 }
 
-/// Measures, writes and draws the figures of one step, and says what they show.
+/// Measures, writes and draws the figures of one step, and prints their text.
 int take_step(const Step& step, const Request& request, const ChartOptions& options,
               ChartDocument& document, bool& has_gnuplot) {
     for (const Figure& figure : step.measure(request)) {
@@ -94,7 +94,7 @@ int take_step(const Step& step, const Request& request, const ChartOptions& opti
     return kExitClean;
 }
 
-/// Looked for before minutes are spent on measuring. Empty: all there.
+/// Checks the input files before measurements of minutes. Returns a fault, or empty.
 std::string missing_input(const ChartOptions& options) {
     namespace fs = std::filesystem;
     const fs::path machine = fs::path(options.data) / "config/machines/paper-trunnion.yaml";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// axguard-lab drive: a program on a simulated motion board, with guard or board made wrong on
-// purpose. The same loop as axguard drive.
+// axguard-lab drive: runs a program on a simulated motion board, with guard or board made wrong on
+// purpose. Uses the same loop as axguard drive.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -39,7 +39,7 @@ struct AblatedDrive {
     }
 };
 
-/// An exit code other than kExitClean: stderr says why there is nothing to drive.
+/// Returns kExitClean, or another exit code after printing the fault to stderr.
 int read_inputs(const AblatedDrive& run, const Machine& machine, DriveOptions& options,
                 GcodeResult& reading) {
     const std::string bad_faults = read_faults(run.faults, options.faults);

@@ -12,10 +12,10 @@
 
 namespace axg {
 
-/// Of accuracy --list: every method.
+/// The document of accuracy --list: every method.
 [[nodiscard]] std::string describe_methods();
 
-/// Of accuracy --time: the same pairs by each method.
+/// Results of accuracy --time: each method on the same pairs.
 struct TimedMethods {
     std::size_t pairs = 0;
     unsigned passes = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // axguard-lab query: bare meshes at given poses, every pair of every pose, one line each. Judges
-// surfaces.
+// surfaces; a body inside another counts as a hit.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -55,8 +55,8 @@ LaneSet lanes_of(const std::string& name) {
                             : LaneSet::widest;
 }
 
-/// Queries every pair of every pose `passes` times; results are the same each time, times the
-/// least. The clock runs around exactly one query: relative pose, query, result.
+/// Queries every pair of every pose `passes` times; every pass gives the same results. Stores
+/// the least times. Each time covers exactly one query: relative pose, query, result.
 std::vector<Row> run_all(const SceneFolder& scene, const Engine& engine,
                          const QueryOptions& options, std::vector<double>& cycle_us) {
     using Clock = std::chrono::steady_clock;
@@ -87,8 +87,8 @@ std::vector<Row> run_all(const SceneFolder& scene, const Engine& engine,
     return rows;
 }
 
-/// Bodies proven apart by their surfaces of which one is, or may be, inside the other. Empty:
-/// memory ran out.
+/// For each row: whether the surfaces are proven apart, but one body is or may be inside the other.
+/// Empty: memory ran out.
 std::optional<std::vector<bool>> find_contained(const SceneFolder& scene, CpuEngine& engine,
                                                 const std::vector<Row>& rows) {
     std::vector<const Mesh*> meshes;
@@ -203,7 +203,7 @@ int query_scene(const QueryOptions& options) {
                                     {.queries_max = 1, .candidates = kCapacities.triangle_pairs},
                                     fault)
                : std::nullopt;
-    // For the containment test in any case.
+    // The containment test always needs the CPU engine.
     std::optional<CpuEngine> cpu = CpuEngine::create(meshes, kCapacities, lanes_of(options.lanes));
     if ((on_gpu && !gpu) || !cpu) {
         fmt::print(stderr, "axguard-lab query: {}\n", fault);

@@ -14,7 +14,7 @@ namespace {
 using Corners = Vec3d[3];
 using Signs = int[3];
 
-/// Sides of the plane of `t` that the other's corners are on. True: all on one side, off the plane.
+/// Signs of the other's corners against the plane of `t`. True: all on one side, off the plane.
 bool beside(const Corners& t, const Corners& other, Signs& signs) {
     for (int i = 0; i < 3; ++i) {
         signs[i] = orientation(t[0], t[1], t[2], other[i]);
@@ -22,9 +22,9 @@ bool beside(const Corners& t, const Corners& other, Signs& signs) {
     return signs[0] != 0 && signs[0] == signs[1] && signs[0] == signs[2];
 }
 
-/// Whether an edge of `other` meets `t`, given on which sides of t's plane its corners are. Edges
-/// that lie in the plane are left out: each of their ends belongs to an edge that does not, unless
-/// all of `other` is in the plane.
+/// Whether an edge of `other` meets `t`, given the signs of its corners against t's plane. Skips
+/// edges in the plane: each of their ends belongs to an edge that is not in it, unless all of
+/// `other` is in the plane.
 bool edge_meets(const Corners& t, const Corners& other, const Signs& signs) {
     for (int i = 0; i < 3; ++i) {
         const int j = (i + 1) % 3;
@@ -70,8 +70,8 @@ bool edge_separates(const FlatCorners& t, const FlatCorners& other) {
     return false;
 }
 
-/// Triangles in one plane; at least one has an area. Along the axis that is dropped the plane is
-/// seen as more than a line, so nothing is lost.
+/// For triangles in one plane, at least one with an area. The plane projected along the dropped
+/// axis is more than a line, so the projection preserves contacts.
 bool meet_in_plane(const Pair<double>& pair, int axis) {
     FlatCorners a, b;
     for (int i = 0; i < 3; ++i) {
@@ -81,7 +81,7 @@ bool meet_in_plane(const Pair<double>& pair, int axis) {
     return !edge_separates(a, b) && !edge_separates(b, a);
 }
 
-/// An axis along which the triangle is seen with an area; -1: it has none.
+/// An axis along which the projected triangle has an area; -1 if the triangle has none.
 int axis_with_area(const Corners& t) {
     for (int axis = 0; axis < 3; ++axis) {
         if (orientation(dropped(t[0], axis), dropped(t[1], axis), dropped(t[2], axis)) != 0) {
@@ -119,7 +119,7 @@ void keep_less(Fraction& best, Fraction found) {
 Fraction to_segment(const Point& w, const Point& u) {
     const mpz_class uu = dot(u, u), wu = dot(w, u);
     if (wu >= 0) {
-        return {dot(w, w)};  // a point as well: u is nothing then
+        return {dot(w, w)};  // also a point: u is zero then
     }
     if (-wu >= uu) {
         const Point end{w.x + u.x, w.y + u.y, w.z + u.z};
@@ -128,8 +128,8 @@ Fraction to_segment(const Point& w, const Point& u) {
     return {dot(w, w) * uu - wu * wu, uu};
 }
 
-/// From the origin to w + s u + t v where the least of all s and t lies at low <= s, t and, of a
-/// triangle, s + t <= 1, or of a parallelogram, s, t <= 1. By the equations of the least square.
+/// From the origin to w + s u + t v, if the least over all s and t is at 0 <= s, t and at
+/// s + t <= 1 (triangle) or s, t <= 1 (parallelogram). Solves the equations of the least square.
 void try_inside(Fraction& best, const Point& w, const Point& u, const Point& v, bool is_triangle) {
     const mpz_class uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), wu = dot(w, u), wv = dot(w, v);
     const mpz_class determinant = uu * vv - uv * uv;
@@ -172,7 +172,7 @@ using Rational = std::array<mpq_class, 18>;
 
 /// All coordinates as whole numbers of `unit`.
 void to_whole(const Rational& p, ExactCorners& a, ExactCorners& b, mpq_class& unit) {
-    mpz_class below = 1;  // powers of two all of them: the largest is the common one
+    mpz_class below = 1;  // all are powers of two: the largest is the common one
     for (const mpq_class& x : p) {
         below = x.get_den() > below ? mpz_class(x.get_den()) : below;
     }
@@ -242,8 +242,8 @@ bool intersect(const Pair<double>& pair) {
     }
     const bool flat_b = is_zero(of_b), flat_a = is_zero(of_a);
     if (!flat_b || !flat_a) {
-        // One whose signs are all zero against the other's is in its plane only if both are, so
-        // here it means no area: then the edges of the other prove nothing, and its own do.
+        // All signs of only one triangle are zero: then the other has no area, because two with
+        // area would both be in one plane. Only the edges of the one without area are tested.
         return (!flat_b && edge_meets(pair.a, pair.b, of_b)) ||
                (!flat_a && edge_meets(pair.b, pair.a, of_a));
     }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The truth about a pair of triangles, without rounding: whether the closed triangles share a
 // point, from exact signs of orientation, and their squared distance as a fraction of GMP's whole
-// numbers. Triangles may have no area. Coordinates are doubles (floats are doubles too), finite,
-// and taken exactly as they are. Nothing here is shared with core/ or with
+// numbers. Triangles may have no area. Coordinates are finite doubles (floats are doubles too) and
+// count as exact. The code shares only Vec3d and Pose with core/, and no computation with
 // tests/support/exact_distance.*.
 #pragma once
 
@@ -29,8 +29,7 @@ template <class T>
 
 /// Squared distance in mm^2; 0 exactly where `intersect` is true. Some 30 us.
 [[nodiscard]] mpq_class squared_distance(const Pair<double>& pair);
-/// The same of triangles that stand somewhere else: a vertex p of a lies at pose * p, the matrix
-/// taken as it is.
+/// The same with a moved: a vertex p of a is at pose * p, with the matrix exactly as given.
 [[nodiscard]] mpq_class squared_distance(const Pair<double>& pair, const Pose& pose_of_a);
 
 /// The root, rounded down: never more than the distance.

@@ -13,7 +13,7 @@ namespace axg::lab {
 
 namespace {
 
-__extension__ using Wide = __int128;  // no coordinate of a pair needs more than 125 bits here
+__extension__ using Wide = __int128;  // a determinant needs at most 126 bits and a sign
 
 thread_local SignCounts counts;
 
@@ -104,8 +104,8 @@ int exact_sign(const std::array<double, kCount>& p) {
     }
 }
 
-/// What a computed determinant may be off by is at most 16 v times the sum of the sizes of its
-/// terms (v = 2^-53): every term passes through at most three differences, two products and four
+/// The error of a computed determinant is at most 16 v times the sum of the sizes of its terms
+/// (v = 2^-53). Every term passes through at most three differences, two products and four
 /// sums, so its computed size is within a factor (1 + v)^9 of the true one, and 16 covers that and
 /// the rounding of this bound itself. A product that underflows is off by less than 2^-1074, times
 /// a coordinate below kMost that is far less than what is left over of a sum above kLeast. Infinity

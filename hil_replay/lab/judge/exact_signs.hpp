@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// On which side: exact signs of orientation, whatever the coordinates. Three steps, each only where
-// the one before cannot tell: double with a proven bound, 128-bit whole numbers, GMP. Nothing here
-// is shared with core/, so that a fault there has no twin here.
+// Exact signs of orientation for any coordinates. Three steps, each only if the previous one cannot
+// decide: double with a proven bound, 128-bit whole numbers, GMP. The code shares only Vec3d with
+// core/, so that a fault there has no twin here.
 #pragma once
 
 #include "core/base/vec3.hpp"
 
 namespace axg::lab {
 
-/// Sign of the determinant (b - a, c - a, d - a): 1 where d lies on that side of the plane a, b, c
-/// from which a, b, c turns clockwise; 0 exactly where the four points are in one plane.
+/// Sign of the determinant (b - a, c - a, d - a): 1 if d is on that side of the plane a, b, c from
+/// which a, b, c turns counter-clockwise; 0 exactly if the four points are in one plane.
 /// Precondition: finite.
 [[nodiscard]] int orientation(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d);
 
@@ -18,10 +18,10 @@ struct Flat {
     double x, y;
 };
 
-/// Sign of the determinant (b - a, c - a): 1 where c lies to the left of a, b.
+/// Sign of the determinant (b - a, c - a): 1 if c is to the left of a, b.
 [[nodiscard]] int orientation(const Flat& a, const Flat& b, const Flat& c);
 
-/// How often each step had the last word, of this thread.
+/// How many signs each step decided, in this thread.
 struct SignCounts {
     unsigned long long by_double = 0, by_integers = 0, by_gmp = 0;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The certified test on bare pairs: tiles in the widest lanes of the processor, then, pair by pair,
-// in double what float left. Source: docs/theory/accuracy.md.
+// The certified test on bare pairs: tiles in the widest lanes of the processor, then a recheck in
+// double of each pair that float left undecided. Source: docs/theory/accuracy.md.
 #include "hil_replay/lab/methods/certified.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace axg::lab {
 namespace {
 
-/// The un-rounded vertices less the tile's origin; d covers how they were placed.
+/// The un-rounded vertices relative to the tile's origin; d covers the error of their placement.
 sat::TrianglePair<double> double_pair(const PairSet& pairs, std::size_t i) noexcept {
     const Pair<double>& pair = pairs.f64[i];
     const auto nearest = [](double x) { return static_cast<double>(static_cast<float>(x)); };
@@ -62,7 +62,7 @@ void write_verdicts(std::uint32_t apart, std::span<Verdict> verdicts) noexcept {
 
 enum class Stages { shared, in_float, with_recheck };
 
-constexpr std::size_t kTilesAtOnce = 64;  // so that what a first stage leaves fills the lanes
+constexpr std::size_t kTilesAtOnce = 64;  // so that the pairs left by a first stage fill the lanes
 
 template <Stages kStages>
 void judge_certified(const PairSet& pairs, std::span<Verdict> verdicts,

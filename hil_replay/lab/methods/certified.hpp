@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The certified test of core/ as methods of the laboratory: its first stage alone
+// The certified test of core/ as methods of the laboratory: only its first stage
 // (certified-shared-f32), in float, and with the recheck in double.
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace axg::lab {
 
-/// Adds them where this processor has the lanes they are written for.
+/// Adds them if this processor has the widest set of lanes of this build.
 void add_certified(std::vector<Method>& methods);
 
 }  // namespace axg::lab

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The distance of two triangles by their edges, with an early end. Source: Larsen, Gottschalk, Lin,
 // Manocha, "Fast Proximity Queries with Swept Sphere Volumes", UNC TR99-018, 1999, and its program
-// PQP (function TriDist), whose order of steps and whose threshold on normals this keeps.
+// PQP (function TriDist): same order of steps, same threshold on normals.
 
-/// Vector from the closest point of one segment to that of the other, and where each lies.
+/// The closest points of two segments.
 template <class T>
 struct EdgePair {
     Vec3<T> on_a, on_b;
@@ -29,8 +29,8 @@ AXG_LAB_FUNCTION EdgePair<T> closest_on_edges(const Vec3<T>& p, const Vec3<T>& a
     return {p + s * a, q + t * b};
 }
 
-/// Squared distance by the edges; `told` where the two edges are closest for certain, `apart` where
-/// a slab between them lies between the triangles.
+/// Squared distance by the edges. `told`: it is that of the triangles. `apart`: a slab between two
+/// edges separates the triangles.
 template <class T>
 struct ByEdges {
     T square;
@@ -64,8 +64,8 @@ AXG_LAB_FUNCTION ByEdges<T> square_by_edges(const Pair<T>& p) {
     return best;
 }
 
-/// Squared distance from the vertex of q nearest to t's plane, where its foot is inside t and all
-/// of q is on that side; negative: nothing is told. `apart`: q is on one side of the plane.
+/// Squared distance from the vertex of q nearest to t's plane if its foot is inside t and all of q
+/// is on that side, else negative. Sets `apart` if q is on one side of the plane.
 template <class T>
 AXG_LAB_FUNCTION T square_by_face(const Vec3<T>* t, const Vec3<T>* q, bool& apart) {
     const Vec3<T> n = cross(t[1] - t[0], t[2] - t[1]);
@@ -92,7 +92,7 @@ AXG_LAB_FUNCTION T square_by_face(const Vec3<T>* t, const Vec3<T>* q, bool& apar
     return h[nearest] * h[nearest] / nn;
 }
 
-/// Squared distance; 0 where nothing shows that the triangles are disjoint. Right in exact
+/// Squared distance; 0 if no step shows that the triangles are disjoint. Correct in exact
 /// arithmetic for triangles with area.
 template <class T>
 AXG_LAB_FUNCTION T pqp_square(const Pair<T>& p) {

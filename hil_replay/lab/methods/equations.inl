@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the edges of one triangle cross the other's plane, by linear equations that share their
-// determinants, then that segment against the other's edges. Source: Tropp, Tal, Shimshoni, "A Fast
-// Triangle to Triangle Intersection Test for Collision Detection", Computer Animation and Virtual
-// Worlds 17(5), 2006, after its abstract; the equations are our own.
+// Intersects the edges of one triangle with the other's plane by linear equations that share their
+// determinants, then tests that segment against the other's edges. Source: Tropp, Tal, Shimshoni,
+// "A Fast Triangle to Triangle Intersection Test for Collision Detection", Computer Animation and
+// Virtual Worlds 17(5), 2006, after its abstract; the equations are our own.
 
 /// The segment start + s along, s in [0, 1], crosses an edge of a triangle of the same plane.
-/// Parallel edges are left to the other two.
+/// Skips parallel edges: the other two decide.
 template <class T>
 AXG_LAB_FUNCTION bool segment_crosses(const Point2<T>& start, const Point2<T>& along,
                                       const Point2<T>* t) {
@@ -26,14 +26,14 @@ AXG_LAB_FUNCTION bool segment_crosses(const Point2<T>& start, const Point2<T>& a
     return false;
 }
 
-/// Inside, or on an edge.
+/// Whether p is inside t or on an edge.
 template <class T>
 AXG_LAB_FUNCTION bool holds(const Point2<T>* t, const Point2<T>& p) {
     const T a = turn(t[0], t[1], p), b = turn(t[1], t[2], p), c = turn(t[2], t[0], p);
     return (a >= T(0) && b >= T(0) && c >= T(0)) || (a <= T(0) && b <= T(0) && c <= T(0));
 }
 
-/// Right in exact arithmetic for triangles with area.
+/// Correct in exact arithmetic for triangles with area.
 template <class T>
 AXG_LAB_FUNCTION Verdict tropp(const Pair<T>& p) {
     const Vec3<T> n = cross(p.a[1] - p.a[0], p.a[2] - p.a[0]);
@@ -64,6 +64,6 @@ AXG_LAB_FUNCTION Verdict tropp(const Pair<T>& p) {
     const Point2<T> t[3] = {without(k, p.a[0]), without(k, p.a[1]), without(k, p.a[2])};
     const Point2<T> start = without(k, end[0]), last = without(k, end[1]);
     const Point2<T> along = {T(last.x - start.x), T(last.y - start.y)};
-    // Where the segment passes a corner, rounding may lose both of its edges: either end is asked.
+    // At a corner, rounding may miss both of its edges: test the ends of the segment as well.
     return verdict_of(!segment_crosses(start, along, t) && !holds(t, start) && !holds(t, last));
 }

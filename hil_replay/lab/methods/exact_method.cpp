@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The exact judge as a method of the laboratory. Boxes that are apart by more than the vertices
-// were placed wrong settle most posed pairs; everything else is exact.
+// The exact judge as a method of the laboratory. A gap between boxes larger than the error of the
+// placed vertices decides most posed pairs; all other pairs are computed exactly.
 #include "hil_replay/lab/methods/exact_method.hpp"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ bool boxes_apart(const Pair<double>& p, double error_mm) noexcept {
     return false;
 }
 
-/// The judge places its first triangle: here that is b.
+/// The judge applies the pose to its first triangle, so pass b first.
 mpq_class squared_distance_of(const PairSet& pairs, std::size_t i) {
     const Pair<double>& given = pairs.given[i];
     if (pairs.poses.empty()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The exact judge as a method of the laboratory. Only where GMP is: AXG_EXACT.
+// The exact judge as a method of the laboratory. Only in builds with GMP: AXG_EXACT.
 #pragma once
 
 #include <vector>

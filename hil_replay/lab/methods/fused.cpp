@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The plain methods once more, with contraction allowed: the one unit of the project where a
-// compiler may fuse a product and a sum. What it does to methods that rest on signs is a result of
-// the laboratory; no verdict of the guard comes from here. Flags: CMakeLists.txt of this folder.
+// compiler may fuse a product and a sum. The laboratory measures its effect on methods that depend
+// on signs; the guard never uses this unit. Flags: CMakeLists.txt of this folder.
 #include "hil_replay/lab/methods/kernels.hpp"
 
 #if defined(AXG_LAB_FUSED)

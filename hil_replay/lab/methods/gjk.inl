@@ -19,7 +19,7 @@ AXG_LAB_FUNCTION void keep_one(Simplex<T>& s, const Vec3<T>& a) {
     s.nearest = a;
 }
 
-/// Of the segment a b, at a share of it.
+/// Reduces to the segment a b, with the nearest point at a + share (b - a).
 template <class T>
 AXG_LAB_FUNCTION void keep_two(Simplex<T>& s, const Vec3<T>& a, const Vec3<T>& b, T share) {
     s.at[0] = a;
@@ -76,8 +76,8 @@ AXG_LAB_FUNCTION void reduce_triangle(Simplex<T>& s, Vec3<T> a, Vec3<T> b, Vec3<
     s.nearest = a + vb * one * ab + vc * one * ac;
 }
 
-/// The nearest of the four faces that have the origin outside; none: the origin is inside, and the
-/// nearest point is the origin.
+/// Reduces to the nearest of the faces that have the origin outside; without such a face the origin
+/// is inside, and is the nearest point.
 template <class T>
 AXG_LAB_FUNCTION void reduce_tetrahedron(Simplex<T>& s) {
     constexpr int kFaces[4][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 3, 2, 0}};
@@ -127,7 +127,7 @@ struct Measured {
     bool converged;
 };
 
-/// 64 steps at most; what has not settled by then is said to be undecided.
+/// Runs at most 64 steps; a pair that has not converged by then is undecided.
 template <class T>
 AXG_LAB_FUNCTION Measured<T> gjk_distance(const Pair<T>& p) {
     constexpr int kSteps = 64;
@@ -151,7 +151,7 @@ AXG_LAB_FUNCTION Measured<T> gjk_distance(const Pair<T>& p) {
         reduce(s);
         const T square = dot(s.nearest, s.nearest);
         if (s.count != 4 && !(square < last)) {
-            return {root(last), true};  // no nearer any more: rounding has the last word
+            return {root(last), true};  // no nearer: only rounding is left
         }
         last = square;
     }

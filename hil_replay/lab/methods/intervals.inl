@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Both planes cut, and what the cuts leave compared on their common line, or in one of the planes.
+// Cuts triangles with the other's plane, then compares both cuts on the common line (Moller), or
+// one cut with the other triangle in its plane (Held).
 // Sources: Moller, "A Fast Triangle-Triangle Intersection Test", Journal of Graphics Tools 2(2),
 // 1997; Held, "ERIT: A Collection of Efficient and Reliable Intersection Tests", Journal of
 // Graphics Tools 2(4), 1997.
 
-/// Plane values of three vertices, and their signs; small values are taken for zero, as published:
-/// an absolute threshold on an unnormalised value, so it means another distance for each triangle.
+/// Plane values of three vertices, and their signs. As published, small values count as zero: the
+/// threshold on the unnormalised value is absolute, so the distance depends on the triangle.
 template <class T>
 struct Heights {
     T d[3];
@@ -51,7 +52,7 @@ AXG_LAB_FUNCTION int cut_off(const Heights<T>& h) {
     return 0;
 }
 
-/// Where the triangle crosses the other's plane, along one coordinate, least first.
+/// Coordinate k of the two points at which the triangle crosses the other's plane, least first.
 template <class T>
 AXG_LAB_FUNCTION void interval_of(const Heights<T>& h, const Vec3<T>* v, int k, T* out) {
     const int i = cut_off(h);
@@ -67,8 +68,8 @@ AXG_LAB_FUNCTION void interval_of(const Heights<T>& h, const Vec3<T>* v, int k, 
     }
 }
 
-/// Right in exact arithmetic for triangles with area; without area the normal is zero, and anything
-/// may be said.
+/// Correct in exact arithmetic for triangles with area; without area the normal is zero, and the
+/// verdict arbitrary.
 template <class T>
 AXG_LAB_FUNCTION Verdict moller(const Pair<T>& p) {
     const Vec3<T> n = cross(p.a[1] - p.a[0], p.a[2] - p.a[0]);
@@ -91,8 +92,8 @@ AXG_LAB_FUNCTION Verdict moller(const Pair<T>& p) {
     return verdict_of(of_a[1] < of_b[0] || of_b[1] < of_a[0]);
 }
 
-/// A segment and a triangle of one plane share a point: the segment is cut by the triangle's sides,
-/// one after the other.
+/// Whether a segment and a triangle of one plane share a point: clips the segment at each side of
+/// the triangle.
 template <class T>
 AXG_LAB_FUNCTION bool segment_meets(const Point2<T>& from, const Point2<T>& to,
                                     const Point2<T>* t) {
@@ -113,8 +114,8 @@ AXG_LAB_FUNCTION bool segment_meets(const Point2<T>& from, const Point2<T>& to,
     return first <= last;
 }
 
-/// The segment in which the plane of b cuts a, against b in that plane. Right in exact arithmetic
-/// for triangles with area.
+/// Tests the segment in which the plane of b cuts a against b in that plane. Correct in exact
+/// arithmetic for triangles with area.
 template <class T>
 AXG_LAB_FUNCTION Verdict held(const Pair<T>& p) {
     const Vec3<T> m = cross(p.b[1] - p.b[0], p.b[2] - p.b[0]);

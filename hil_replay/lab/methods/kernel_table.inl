@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The batches of the plain methods: after kernels.inl, in the units that offer them.
+// The batches of the plain methods. A unit that offers them includes this after kernels.inl.
 
 namespace axg::lab::AXG_LAB_UNIT {
 
-/// A method that says yes or no.
+/// A method without distances: the verdict is separated or intersecting.
 template <class T, Verdict (*kJudge)(const Pair<T>&)>
 static void decide(const Pair<T>* pairs, std::size_t count, Verdict* verdicts, double*) {
     for (std::size_t i = 0; i < count; ++i) {

@@ -11,13 +11,13 @@
 namespace axg::lab {
 
 struct Kernel {
-    const char* name;  // without what it computes in
+    const char* name;  // without the scalar type
     JudgePairs<float> f32;
     JudgePairs<double> f64;
 };
 
 [[nodiscard]] std::span<const Kernel> plain_kernels() noexcept;
-/// Empty where this build has no such unit; to be called only where the processor has FMA.
+/// Empty if this build has no such unit. Run them only on a processor with FMA.
 [[nodiscard]] std::span<const Kernel> fused_kernels() noexcept;
 
 }  // namespace axg::lab

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every plain method as a template on its scalar, and the tables of their batches. The including
-// file names the unit with AXG_LAB_UNIT: each unit has functions of its own, so that code compiled
-// with contraction never stands in for code without. Nothing here calls a function that another
-// unit could have compiled; the standard library's templates are such functions.
+// Every plain method as a template on its scalar. The including file names the unit with
+// AXG_LAB_UNIT: each unit has functions of its own, so that code compiled with contraction never
+// replaces code without. The code here calls no function that another unit could also compile, such
+// as a template of the standard library.
 
 #include <type_traits>
 
@@ -10,7 +10,7 @@
 #include "core/base/vec3.hpp"
 #include "hil_replay/lab/methods/kernels.hpp"
 
-// Inlined always: no copy of it is left for a linker to choose.
+// Always inlined: the linker finds no second copy to choose.
 #define AXG_LAB_FUNCTION AXG_HD
 
 namespace axg::lab::AXG_LAB_UNIT {

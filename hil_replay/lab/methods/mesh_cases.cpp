@@ -7,13 +7,13 @@
 namespace axg::lab {
 namespace {
 
-/// What is known after some of the pairs.
+/// Result over the pairs judged up to now.
 struct Least {
     Verdict verdict = Verdict::separated;
     double distance_mm = std::numeric_limits<double>::infinity();
 };
 
-/// Exact distances of millions of pairs take hours.
+/// False for exact methods: exact distances of millions of pairs need hours.
 bool measures(const Method& method) noexcept {
     return method.gives_distance && method.scalar != Scalar::exact;
 }

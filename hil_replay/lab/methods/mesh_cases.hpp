@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surfaces against surfaces by a method that knows pairs of triangles alone: every triangle of one
-// against every triangle of the other. mm.
+// Judges surfaces with a method for pairs of triangles: every triangle of one surface against every
+// triangle of the other. mm.
 #pragma once
 
 #include <span>
@@ -10,9 +10,9 @@
 
 namespace axg::lab {
 
-/// Intersecting where one pair is, else undecided where one pair is, else separated; the distance
-/// is the least of all pairs (not told by an exact method). Cost: triangles of a times triangles of
-/// b, no pair left out.
+/// Verdict: the first of rejected, intersecting, undecided, separated that any pair has. Distance:
+/// the least of all pairs (none from an exact method). Cost: triangles of a times triangles of b;
+/// skips no pair.
 [[nodiscard]] Judged judge_meshes(const Method& method, std::span<const Mesh> meshes,
                                   std::span<const MeshCase> cases);
 

@@ -13,7 +13,7 @@
 namespace axg::lab {
 namespace {
 
-/// What is said of a kernel in every arithmetic. Order: as they are listed.
+/// Name and source of a kernel, the same in every arithmetic. Order: that of methods().
 struct Description {
     std::string_view kernel, source;
 };
@@ -55,10 +55,10 @@ bool gives_distance(std::string_view kernel) {
     return kernel == "pqp-distance" || kernel == "gjk";
 }
 
-/// The kernel of that name in float and in double.
+/// Adds the kernel of that name in float and in double.
 void add_kernel(std::vector<Method>& all, std::span<const Kernel> kernels, const Description& about,
                 bool fused) {
-    static std::deque<std::string> names;  // a Method keeps a view of its own
+    static std::deque<std::string> names;  // a Method has only a view of its name
     for (const Kernel& kernel : kernels) {
         if (about.kernel != kernel.name) {
             continue;

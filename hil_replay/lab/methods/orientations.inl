@@ -37,8 +37,8 @@ AXG_LAB_FUNCTION Alone alone(const int* sign) {
     return {-1, false};
 }
 
-/// p1 lies beyond a corner of the second triangle (all counter-clockwise): the tree of the paper's
-/// figure for that region.
+/// Case of p1 beyond a corner of the second triangle, both counter-clockwise: the decision tree of
+/// the paper's figure for that region.
 template <class T>
 AXG_LAB_FUNCTION bool meets_at_corner(const Point2<T>& p1, const Point2<T>& q1, const Point2<T>& r1,
                                       const Point2<T>& p2, const Point2<T>& q2,
@@ -62,7 +62,7 @@ AXG_LAB_FUNCTION bool meets_at_corner(const Point2<T>& p1, const Point2<T>& q1, 
     return turn(q1, r1, q2) >= zero && turn(r2, r1, q2) >= zero;
 }
 
-/// p1 lies beyond the side from r2 to p2.
+/// Case of p1 beyond the side from r2 to p2.
 template <class T>
 AXG_LAB_FUNCTION bool meets_at_side(const Point2<T>& p1, const Point2<T>& q1, const Point2<T>& r1,
                                     const Point2<T>& p2, const Point2<T>& r2) {
@@ -77,8 +77,8 @@ AXG_LAB_FUNCTION bool meets_at_side(const Point2<T>& p1, const Point2<T>& q1, co
            (turn(p1, r1, r2) >= zero || turn(q1, r1, r2) >= zero);
 }
 
-/// Both counter-clockwise: which side or corner of b the first vertex of a lies beyond, then the
-/// tree of that region.
+/// Finds the side or corner of b beyond which the first vertex of a is, then runs the tree of that
+/// region. Precondition: both are counter-clockwise.
 template <class T>
 AXG_LAB_FUNCTION bool meet_in_plane(const Point2<T>* a, const Point2<T>* b) {
     bool inner[3];
@@ -144,7 +144,7 @@ AXG_LAB_FUNCTION bool on_one_side(const int* sign) {
     return sign[0] != 0 && sign[0] == sign[1] && sign[0] == sign[2];
 }
 
-/// Right in exact arithmetic for triangles with area.
+/// Correct in exact arithmetic for triangles with area.
 template <class T>
 AXG_LAB_FUNCTION Verdict guigue_devillers(const Pair<T>& p) {
     int side_a[3], side_b[3];
@@ -177,8 +177,8 @@ AXG_LAB_FUNCTION T passing(const Vec3<T>& p, const Vec3<T>& q, const Vec3<T>& r,
 
 /// Signed distances of vertices from planes, then of two pairs of lines. Source: Shen, Heng, Tang,
 /// "A Fast Triangle-Triangle Overlap Test Using Signed Distances", Journal of Graphics Tools 8(1),
-/// 2003, after its abstract: the turning of the vertices is that of Guigue and Devillers. Right in
-/// exact arithmetic for triangles with area.
+/// 2003, after its abstract: vertices are ordered as by Guigue and Devillers. Correct in exact
+/// arithmetic for triangles with area.
 template <class T>
 AXG_LAB_FUNCTION Verdict shen(const Pair<T>& p) {
     const Vec3<T> n = cross(p.a[1] - p.a[0], p.a[2] - p.a[0]);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles of one plane, after the coordinate in which the plane is steepest is left out.
+// Triangles of one plane, projected by dropping the coordinate in which the plane is steepest.
 
 template <class T>
 struct Point2 {
     T x, y;
 };
 
-/// Index of the largest component by size: the coordinate to leave out.
+/// Index of the largest component by size: the coordinate to drop.
 template <class T>
 AXG_LAB_FUNCTION int steepest(const Vec3<T>& n) {
     const T x = size_of(n.x), y = size_of(n.y), z = size_of(n.z);
@@ -29,8 +29,8 @@ AXG_LAB_FUNCTION T turn(const Point2<T>& a, const Point2<T>& b, const Point2<T>&
     return (a.x - c.x) * (b.y - c.y) - (a.y - c.y) * (b.x - c.x);
 }
 
-/// Two segments that are not parallel share a point. Source: Antonio, Graphics Gems III, as in
-/// Moller 1997.
+/// Whether two segments that are not parallel share a point. Source: Antonio, Graphics Gems III, as
+/// in Moller 1997.
 template <class T>
 AXG_LAB_FUNCTION bool edges_cross(const Point2<T>& a, const Point2<T>& b, const Point2<T>& c,
                                   const Point2<T>& d) {
@@ -42,14 +42,14 @@ AXG_LAB_FUNCTION bool edges_cross(const Point2<T>& a, const Point2<T>& b, const 
            (f < T(0) && s <= T(0) && s >= f && t <= T(0) && t >= f);
 }
 
-/// Strictly inside: the edges have been asked before.
+/// Whether p is strictly inside t: the caller has tested the edges before.
 template <class T>
 AXG_LAB_FUNCTION bool is_inside(const Point2<T>& p, const Point2<T>* t) {
     const T a = turn(t[0], t[1], p), b = turn(t[1], t[2], p), c = turn(t[2], t[0], p);
     return (a > T(0) && b > T(0) && c > T(0)) || (a < T(0) && b < T(0) && c < T(0));
 }
 
-/// Every edge against every edge, then a vertex of each inside the other.
+/// Tests every edge against every edge, then a vertex of each against the other triangle.
 template <class T>
 AXG_LAB_FUNCTION bool overlap_in_plane(const Vec3<T>* a, const Vec3<T>* b, const Vec3<T>& n) {
     const int k = steepest(n);

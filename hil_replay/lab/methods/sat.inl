@@ -67,16 +67,16 @@ AXG_LAB_FUNCTION bool apart_in_plane(const SatPair<T>& s) {
     return false;
 }
 
-/// All seventeen. In exact arithmetic right for triangles with area; two triangles without may be
-/// called intersecting wrongly, never separated.
+/// Tests all seventeen axes. Correct in exact arithmetic for triangles with area; two triangles
+/// without area may wrongly be called intersecting, never separated.
 template <class T>
 AXG_LAB_FUNCTION Verdict sat17(const Pair<T>& p) {
     const SatPair<T> s = sat_pair(p);
     return verdict_of(apart_by_normals(s) || apart_by_edges(s) || apart_in_plane(s));
 }
 
-/// Without the six in-plane axes: coplanar triangles are apart only where a normal or a product of
-/// edges happens to say so, so most are called intersecting. Right in exact arithmetic where the
+/// Omits the six in-plane axes: coplanar triangles are separated only if a normal or a product of
+/// edges happens to separate them, so most are called intersecting. Correct in exact arithmetic if
 /// planes are not parallel. Source: the seed paper's eleven without its six.
 template <class T>
 AXG_LAB_FUNCTION Verdict sat11(const Pair<T>& p) {
@@ -84,8 +84,8 @@ AXG_LAB_FUNCTION Verdict sat11(const Pair<T>& p) {
     return verdict_of(apart_by_normals(s) || apart_by_edges(s));
 }
 
-/// Six axes where the normals are parallel within a threshold, eleven where they are not: the
-/// seed paper, and Eberly's Geometric Tools, whose threshold on the squared sine this is.
+/// Tests six axes if the normals are parallel within a threshold, else eleven. Sources: the seed
+/// paper, and Eberly's Geometric Tools for the threshold on the squared sine.
 template <class T>
 AXG_LAB_FUNCTION Verdict paper_6_11(const Pair<T>& p) {
     const SatPair<T> s = sat_pair(p);
@@ -98,8 +98,8 @@ AXG_LAB_FUNCTION Verdict paper_6_11(const Pair<T>& p) {
     return verdict_of(parallel ? apart_in_plane(s) : apart_by_edges(s));
 }
 
-/// The same seventeen made unit vectors, axes too short to be normalised left out, apart only where
-/// the gap exceeds 0.1 um: a tolerance that holds for one size of triangles and for no other.
+/// One of the seventeen axes as a unit vector; skips an axis too short to be normalised. Apart only
+/// if the gap exceeds 0.1 um: a tolerance that fits one size of triangles and no other.
 template <class T>
 AXG_LAB_FUNCTION bool apart_along_unit(const SatPair<T>& s, const Vec3<T>& l) {
     const T square = dot(l, l);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every edge of each triangle against the other triangle. Source: Moller and Trumbore, "Fast,
+// Tests every edge of each triangle against the other one. Source: Moller and Trumbore, "Fast,
 // Minimum Storage Ray/Triangle Intersection", Journal of Graphics Tools 2(1), 1997, with its
 // threshold on the determinant.
 
@@ -9,7 +9,7 @@ AXG_LAB_FUNCTION bool segment_pierces(const Vec3<T>& from, const Vec3<T>& to, co
     const Vec3<T> h = cross(along, f);
     const T determinant = dot(e, h);
     if (size_of(determinant) <= tolerance<T>(1e-6, 1e-6)) {
-        return false;  // as published: a segment beside the plane, or in it, hits nothing
+        return false;  // as published: a segment parallel to the plane, or in it, never hits
     }
     const Vec3<T> w = from - t[0];
     const T u = dot(w, h) / determinant;
@@ -25,8 +25,8 @@ AXG_LAB_FUNCTION bool segment_pierces(const Vec3<T>& from, const Vec3<T>& to, co
     return at >= T(0) && at <= T(1);
 }
 
-/// Right in exact arithmetic for triangles with area that are not in one plane; of coplanar ones it
-/// sees nothing.
+/// Correct in exact arithmetic for triangles with area that are not in one plane; always calls
+/// coplanar ones separated.
 template <class T>
 AXG_LAB_FUNCTION Verdict six_segment(const Pair<T>& p) {
     for (int i = 0; i < 3; ++i) {

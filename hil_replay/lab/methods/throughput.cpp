@@ -10,7 +10,7 @@ namespace {
 
 using Random = std::mt19937_64;
 
-/// The library's distributions differ from one library to the next.
+/// Own code, because the distributions of the standard libraries differ.
 float between(Random& random, double low, double high) {
     return static_cast<float>(low +
                               (high - low) * (static_cast<double>(random() >> 11U) * 0x1p-53));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bounding volumes alone, one around each triangle: apart where the volumes are, else a hit, as one
-// would read them who stops there.
+// Only bounding volumes, one around each triangle: separated if the volumes are, else intersecting,
+// as in a check without a triangle test.
 
-/// Axis-aligned boxes.
+/// Whether the projections of the triangles onto l are disjoint.
 template <class T>
 AXG_LAB_FUNCTION bool apart_by_slab(const Pair<T>& p, const Vec3<T>& l) {
     const T a0 = dot(l, p.a[0]), a1 = dot(l, p.a[1]), a2 = dot(l, p.a[2]);
@@ -71,7 +71,7 @@ AXG_LAB_FUNCTION Verdict sphere(const Pair<T>& p) {
 
 /// The flat box around a triangle along its longest edge: centre, two half edges, and its normal.
 /// Source of the test of two: Gottschalk, Lin, Manocha, "OBBTree", SIGGRAPH 1996; the axes are not
-/// normalised, for nothing is compared but gaps along one axis.
+/// normalised, because the test compares only lengths along one axis.
 template <class T>
 struct FlatBox {
     Vec3<T> centre, half[2], normal;
