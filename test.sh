@@ -242,7 +242,9 @@ if is_part verdicts; then
         [[ " ${builds[*]} " != *" $preset "* || ! -x $root/build/$preset/axguard ]] ||
             compared+=("$preset")
     done
-    [[ $night == yes ]] || export AXG_VERDICT_POSES=${AXG_VERDICT_POSES:-100}
+    # By day fewer poses, and the shorter of two programs: under the emulator it takes the time.
+    [[ $night == yes ]] || export AXG_VERDICT_POSES=${AXG_VERDICT_POSES:-100} \
+        AXG_VERDICT_PROGRAM=${AXG_VERDICT_PROGRAM:-paper-trunnion-near}
     step "equal verdicts of all builds" "$root/tests/tools/equal_verdicts.sh" "${compared[@]}" ||
         true
 fi

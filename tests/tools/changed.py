@@ -40,7 +40,7 @@ def checked_commit(root):
     path = root / RECORD
     text = path.read_text(encoding="utf-8") if path.is_file() else ""
     runs = re.findall(r"(?m)^(?:full|night),([0-9a-f]{7,40}),([0-9-]{10}),", text)
-    return max(runs, key=lambda run: run[1])[0] if runs else None
+    return sorted(runs, key=lambda run: run[1])[-1][0] if runs else None  # of a day the last
 
 
 def changed_files(root, commit):

@@ -29,31 +29,51 @@ axguard() { # PRESET ARGUMENT...
     program_of "$1" axguard "${@:2}"
 }
 
+# each COMMAND PRESET...: for all builds at once. A failure of one is one of all.
+each() {
+    local command=$1 pid pids=() failed=0
+    shift
+    for preset in "$@"; do
+        "$command" "$preset" &
+        pids+=($!)
+    done
+    for pid in "${pids[@]}"; do
+        wait "$pid" || failed=1
+    done
+    return "$failed"
+}
+
+rm -rf "$folder"
+mkdir -p "$folder"
+
 # Hashes over every bit of the answers to random questions, and of the certified test.
-wanted='' compared=()
-for preset in "$@"; do
+hash_lanes() { # PRESET: a line for each set of lanes of this processor
+    local code lanes line
     for lanes in avx512 avx2 neon; do
         code=0
-        line=$(program_of "$preset" tests/axg_lane_hash 3000 "$seed" "$lanes") || code=$?
-        [[ $code -ne 77 ]] || continue # not on this processor
+        line=$(program_of "$1" tests/axg_lane_hash 3000 "$seed" "$lanes") || code=$?
+        [[ $code -eq 77 ]] || echo "$code $lanes $line" >>"$folder/$1-lanes"
+    done
+}
+each hash_lanes "$@"
+wanted='' compared=()
+for preset in "$@"; do
+    if [[ ! -s $folder/$preset-lanes ]]; then
+        echo "equal_verdicts.sh: $preset: no set of lanes runs on this processor" >&2
+        exit 1
+    fi
+    while read -r code lanes line; do
         compared+=("$preset $lanes")
         if [[ $code -ne 0 || $line != "${wanted:=$line}" ]]; then
             echo "equal_verdicts.sh: ${compared[0]}: $wanted" >&2
             echo "equal_verdicts.sh: $preset $lanes: $line (exit code $code)" >&2
             exit 1
         fi
-    done
+    done <"$folder/$preset-lanes"
 done
-if [[ ${#compared[@]} -lt $# ]]; then
-    echo "equal_verdicts.sh: a build without a set of lanes; compared: ${compared[*]}" >&2
-    exit 1
-fi
 printf 'lanes: %s:' "$wanted"
 printf ' %s,' "${compared[@]}"
 printf ' equal (seed %s)\n' "$seed"
-
-rm -rf "$folder"
-mkdir -p "$folder"
 
 "$root/build/$1/tests/axg_make_scene" "$machine" "$folder/scene" --poses "$poses" --seed "$seed" \
     --near
@@ -64,10 +84,16 @@ for preset in "$@"; do
         asked+=("$preset")
     fi
 done
+query_scene() { # PRESET
+    local ask
+    for ask in hit count clearance; do
+        program_of "$1" axguard-lab query "$folder/scene" --engine cpu --ask "$ask" \
+            --out "$folder/$1-$ask.csv" >/dev/null
+    done
+}
+each query_scene "${asked[@]}"
 for ask in hit count clearance; do
     for preset in "${asked[@]}"; do
-        program_of "$preset" axguard-lab query "$folder/scene" --engine cpu --ask "$ask" \
-            --out "$folder/$preset-$ask.csv" >/dev/null
         cmp "$folder/$1-$ask.csv" "$folder/$preset-$ask.csv"
     done
     lines=$(wc -l <"$folder/$1-$ask.csv")
@@ -80,27 +106,32 @@ for ask in hit count clearance; do
 done
 
 # The same program becomes the same trace, byte for byte, in every build and in a second run.
-program=$root/hil_replay/programs/paper-trunnion-demo.ngc
-for preset in "$@" "$1"; do
-    trace=$folder/$preset.log
-    [[ ! -e $trace ]] || trace=$folder/$preset-again.log
-    axguard "$preset" simulate "$machine" "$program" -o "$trace" >/dev/null
-    cmp "$folder/$1.log" "$trace"
+program=$root/hil_replay/programs/${AXG_VERDICT_PROGRAM:-paper-trunnion-demo}.ngc
+simulate_program() { # PRESET [SUFFIX]
+    axguard "$1" simulate "$machine" "$program" -o "$folder/$1${2:-}.log" >/dev/null
+}
+each simulate_program "$@"
+simulate_program "$1" -again
+for trace in "$@" "$1-again"; do
+    cmp "$folder/$1.log" "$folder/$trace.log"
 done
 echo "simulate: $(wc -l <"$folder/$1.log") frames equal in $*, and in a second run"
 
 # Replayed, the trace gives the same table of verdicts and the same exit code.
-for preset in "$@" "$1"; do
-    table=$folder/$preset-replay.csv
-    [[ ! -e $table ]] || table=$folder/$preset-replay-again.csv
-    code=0
-    axguard "$preset" replay "$machine" "$folder/$1.log" --mode contact --keep-going \
-        --csv "$table" >/dev/null 2>&1 || code=$?
-    # 11: a slow build misses the deadline, which is about time; 10 is the collision of the program.
-    if [[ $code -ne 10 && $code -ne 11 ]]; then
-        echo "equal_verdicts.sh: replay of $preset ended with $code, wanted 10 (collision)" >&2
+replay_trace() { # PRESET [SUFFIX]
+    local code=0
+    axguard "$1" replay "$machine" "$folder/$first.log" --mode contact --keep-going \
+        --csv "$folder/$1-replay${2:-}.csv" >/dev/null 2>&1 || code=$?
+    # 11: a slow build misses the deadline, which is about time; 10 is a collision, 0 none.
+    if [[ $code -ne 0 && $code -ne 10 && $code -ne 11 ]]; then
+        echo "equal_verdicts.sh: replay of $1 ended with $code, wanted 0, 10 or 11" >&2
         exit 1
     fi
-    cmp "$folder/$1-replay.csv" "$table"
+}
+first=$1
+each replay_trace "$@"
+replay_trace "$1" -again
+for table in "${@/%/-replay}" "$1-replay-again"; do
+    cmp "$folder/$1-replay.csv" "$folder/$table.csv"
 done
 echo "replay: $(($(wc -l <"$folder/$1-replay.csv") - 1)) lines equal in $*, and in a second run"
