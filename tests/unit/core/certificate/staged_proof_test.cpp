@@ -245,9 +245,9 @@ TEST(StagedProver, ARoundHalvesOnlyWhatIsOpen) {
                                            : Proof::not_proven;
                             },
                         .prefers_batches = prefers_batches};
-        slides.prove(fake, Slides::plan(3, TreeForm::leaves, 40));
+        slides.prove(fake, Slides::plan(3, TreeForm::leaves, 56));
         EXPECT_EQ(slides.results[0].proof, JointBoxProof::proven);
-        EXPECT_EQ(slides.results[0].queries, 2U + 4 * 2U) << "an eighth of its twenty at once";
+        EXPECT_EQ(slides.results[0].queries, 2U + 4 * 2U) << "an eighth of its 28 at once";
         EXPECT_EQ(slides.results[1].proof, JointBoxProof::budget_spent);
         EXPECT_EQ(slides.results[1].queries, 2U + 2U + 4U + 8U + 8U * 4U) << "no fourth round";
         ASSERT_EQ(fake.calls.size(), 2U + 4U + 1U);
