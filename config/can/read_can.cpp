@@ -13,7 +13,7 @@
 #include "config/text/map_reader.hpp"
 #include "config/text/quote_text.hpp"
 #include "core/base/sincos.hpp"
-#include "core/certificate/look_ahead_path.hpp"
+#include "core/reach/look_ahead_path.hpp"
 
 namespace axg {
 namespace {

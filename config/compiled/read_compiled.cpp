@@ -14,7 +14,7 @@
 #include "config/text/quote_text.hpp"
 #include "config/text/small_file.hpp"
 #include "core/base/finite.hpp"
-#include "core/certificate/stop_certificate.hpp"
+#include "core/certificate/pair_tasks.hpp"
 #include "core/certificate/travel.hpp"
 #include "core/collision/tree.hpp"
 

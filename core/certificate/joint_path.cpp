@@ -217,4 +217,18 @@ PathMotion motion_along(const Machine& machine, const JointPath& path, std::span
     return motion_by(machine, path, levers_over(machine, path, moved, a, b, box), box.half);
 }
 
+bool is_in_box_any_turn(const Machine& machine, const JointPath& path, const JointBox& box,
+                        std::span<const double> position) noexcept {
+    bool inside = true;
+    for (std::uint32_t k = 0; inside && k < path.count; ++k) {
+        const std::uint32_t axis = machine.bodies[path.body[k]].joint.axis;
+        double off = position[axis] - box.centre[axis];
+        if (machine.axes[axis].unlimited) {
+            off -= 2 * kPi * std::round(off / (2 * kPi));
+        }
+        inside = std::fabs(off) <= box.half[axis];
+    }
+    return inside;
+}
+
 }  // namespace axg

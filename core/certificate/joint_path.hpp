@@ -12,14 +12,9 @@
 #include "core/machine/kinematics.hpp"
 #include "core/machine/machine.hpp"
 #include "core/mesh/mesh.hpp"
+#include "core/reach/joint_box.hpp"
 
 namespace axg {
-
-/// An interval of positions for each axis: centre +- half, mm or rad, in Machine::axes order.
-/// half >= 0.
-struct JointBox {
-    std::array<double, kAxesMax> centre{}, half{};
-};
 
 /// Bounds of a body's surface in its mesh frame: a box, and a ball about the box's middle.
 struct BodyExtent {
@@ -37,6 +32,11 @@ struct JointPath {
 };
 [[nodiscard]] JointPath path_between(const Machine& machine, std::uint32_t a,
                                      std::uint32_t b) noexcept;
+
+/// Whether the box contains the positions, on the axes of the path; of an endless axis in any turn.
+[[nodiscard]] bool is_in_box_any_turn(const Machine& machine, const JointPath& path,
+                                      const JointBox& box,
+                                      std::span<const double> position) noexcept;
 
 /// Bound of how much the joints of a path can reduce the distance of the two bodies in a box.
 struct PathMotion {

@@ -44,19 +44,6 @@ namespace axg {
 inline constexpr std::uint32_t kQueriesMax =
     kPairsMax + 2;  // pairs, known-answer test far and near
 
-enum class SnapshotStatus : std::uint8_t {
-    not_run = 0,
-    ok,
-    wrong_axes,
-    not_finite,
-    unknown_tool,
-    left_path,    // the axes are not at the announced positions, or the board changed these
-    left_jog,     // another axis moved; or the jog's axis moved back or too fast, or is unknown
-    left_travel,  // outside the travel of the travel proofs, overrun included
-    left_limits,  // an axis broke a declared limit (core/certificate/limit_evidence.hpp)
-    own_stop,     // only a stop of the board's own explains the motion of an axis
-};
-
 struct PairQueries {
     SnapshotStatus status = SnapshotStatus::not_run;
     std::uint32_t count = 0;        // queried pairs; the two known-answer queries follow them

@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "core/base/assert.hpp"
-#include "core/certificate/jog.hpp"
 #include "core/collision/known_answer.hpp"
 #include "core/machine/kinematics.hpp"
+#include "core/reach/jog.hpp"
 
 namespace axg {
 

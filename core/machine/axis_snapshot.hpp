@@ -35,6 +35,20 @@ struct AxisSnapshot {
 };
 static_assert(std::is_trivially_copyable_v<AxisSnapshot>);
 
+/// Why a snapshot is not a base for proofs.
+enum class SnapshotStatus : std::uint8_t {
+    not_run = 0,
+    ok,
+    wrong_axes,
+    not_finite,
+    unknown_tool,
+    left_path,    // the axes are not at the announced positions, or the board changed these
+    left_jog,     // another axis moved; or the jog's axis moved back or too fast, or is unknown
+    left_travel,  // outside the travel of the travel proofs, overrun included
+    left_limits,  // an axis broke a declared limit (core/reach/limit_evidence.hpp)
+    own_stop,     // only a stop of the board's own explains the motion of an axis
+};
+
 /// Low four bits of the live counter of the permit whose cap the board obeys; empty: none is named.
 /// No proof uses it yet. Source: docs/reference/board.md, "Samples and the flags byte".
 [[nodiscard]] constexpr std::optional<std::uint8_t> acked_permit(

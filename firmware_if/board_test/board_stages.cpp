@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/certificate/stop_limits.hpp"
+#include "core/reach/stop_limits.hpp"
 #include "firmware_if/board_test/board_player.hpp"
 
 namespace axg {

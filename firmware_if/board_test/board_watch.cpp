@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/certificate/stop_limits.hpp"
+#include "core/reach/stop_limits.hpp"
 
 namespace axg {
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/certificate/stop_limits.hpp"
+#include "core/reach/stop_limits.hpp"
 #include "firmware_if/cli/limit_text.hpp"
 
 namespace axg {

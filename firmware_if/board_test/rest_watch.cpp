@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/certificate/stop_reach.hpp"
+#include "core/reach/stop_reach.hpp"
 #include "firmware_if/cli/limit_text.hpp"
 
 namespace axg {

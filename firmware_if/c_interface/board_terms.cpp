@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/certificate/jog.hpp"
-#include "core/certificate/stop_limits.hpp"
+#include "core/reach/jog.hpp"
+#include "core/reach/stop_limits.hpp"
 #include "firmware_if/c_interface/sample_frames.hpp"
 
 namespace axg {

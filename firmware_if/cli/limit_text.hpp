@@ -7,9 +7,9 @@
 #include <span>
 #include <string>
 
-#include "core/certificate/limit_fact.hpp"
 #include "core/guard/monitor.hpp"
 #include "core/machine/machine.hpp"
+#include "core/reach/limit_fact.hpp"
 
 namespace axg {
 

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <span>
 
-#include "core/certificate/look_ahead_path.hpp"
+#include "core/reach/look_ahead_path.hpp"
 #include "core/machine/axis_snapshot.hpp"
 #include "core/machine/machine.hpp"
 #include "firmware_if/can/can_frame.hpp"

@@ -12,7 +12,7 @@ namespace axg {
 enum class PeriodVerdict : std::uint8_t { unknown = 0, right, wrong };
 
 // Every proof supposes the declared period to one part in this
-// (core/certificate/motion_history.hpp).
+// (core/reach/motion_history.hpp).
 inline constexpr std::int64_t kPeriodPart = 100;
 // Two clocks run apart by 200 ppm at most.
 inline constexpr std::int64_t kClockPart = 5000;

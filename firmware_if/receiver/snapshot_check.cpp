@@ -6,7 +6,7 @@
 
 #include "core/base/finite.hpp"
 #include "core/base/sincos.hpp"
-#include "core/certificate/stop_limits.hpp"
+#include "core/reach/stop_limits.hpp"
 
 namespace axg {
 namespace {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/certificate/jog.hpp"
 #include "core/certificate/pair_queries.hpp"
+#include "core/reach/jog.hpp"
 #include "core/worst_case/worst_case_batch.hpp"
 #include "firmware_if/setup/measure_cycle.hpp"
 

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "core/base/sincos.hpp"
-#include "core/certificate/stop_limits.hpp"
-#include "core/certificate/stop_reach.hpp"
+#include "core/reach/stop_limits.hpp"
+#include "core/reach/stop_reach.hpp"
 
 namespace axg {
 namespace {

@@ -3,8 +3,8 @@
 // machine file allows a jog.
 #pragma once
 
-#include "core/certificate/jog.hpp"
 #include "core/machine/machine.hpp"
+#include "core/reach/jog.hpp"
 #include "hil_replay/board/motion_board.hpp"
 
 namespace axg {

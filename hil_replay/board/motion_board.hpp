@@ -12,9 +12,9 @@
 #include <span>
 #include <vector>
 
-#include "core/certificate/jog.hpp"
 #include "core/machine/configuration_hashes.hpp"
 #include "core/machine/machine.hpp"
+#include "core/reach/jog.hpp"
 #include "firmware_if/protocol/axis_frames.hpp"
 #include "hil_replay/board/axis_cap_keeper.hpp"
 #include "hil_replay/board/axis_motion.hpp"

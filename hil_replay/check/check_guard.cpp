@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "core/base/sincos.hpp"
-#include "core/certificate/jog.hpp"
 #include "core/certificate/stop_certificate.hpp"
+#include "core/reach/jog.hpp"
 #include "firmware_if/guard/live_refusal.hpp"
 #include "firmware_if/protocol/axis_frames.hpp"
 #include "firmware_if/protocol/obeyed_by.hpp"

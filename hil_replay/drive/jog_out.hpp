@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "core/certificate/jog.hpp"
 #include "core/collision/containment.hpp"
 #include "core/collision/engine.hpp"
 #include "core/machine/axis_snapshot.hpp"
+#include "core/reach/jog.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
 #include "hil_replay/drive/drive_run.hpp"
 

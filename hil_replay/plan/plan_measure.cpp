@@ -9,7 +9,7 @@
 #include <span>
 #include <utility>
 
-#include "core/certificate/motion_history.hpp"
+#include "core/reach/motion_history.hpp"
 #include "core/certificate/pair_queries.hpp"
 #include "firmware_if/setup/choose_engine.hpp"
 #include "firmware_if/setup/guard_engine.hpp"

@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/certificate/limit_evidence.hpp"
 #include "core/machine/machine.hpp"
+#include "core/reach/limit_evidence.hpp"
 
 namespace axg {
 

@@ -3,7 +3,7 @@
 """Who may include whom. Data flows one way: a layer that looked back would no longer be testable
 with arrays and a counter for time. Houses (core/, config/, ...) first; then their rooms, which are
 the folders below: no circle between rooms, no include of a room that the CMakeLists.txt does not
-link, and at most forty files a room."""
+link, at most forty files a room, and each room named by the README of its house."""
 import collections
 import pathlib
 import re
@@ -190,10 +190,20 @@ def room_faults(files, text_of):
                 yield f"{where}: {room}/CMakeLists.txt does not link {other}: name it after ROOMS"
 
 
+def unnamed_rooms(files, text_of):
+    """Rooms that the README of their house does not name."""
+    for room in sorted({room_of(name) for name in files} - {None}):
+        house, _, inside = room.partition("/")
+        readme = f"{house}/README.md"
+        if readme in files and f"`{inside.partition('/')[0]}" not in text_of(readme):
+            yield f"{readme}: does not name its room {inside}"
+
+
 def main():
     root = pathlib.Path(sys.argv[1])
     files = tracked_files(root)
     faults = list(room_faults(files, lambda name: read_text(root, name)))
+    faults += unnamed_rooms(files, lambda name: read_text(root, name))
     for name in files:
         folder = name.split("/")[0]
         if is_cpp(name) and folder in FOLDERS:

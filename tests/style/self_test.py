@@ -117,6 +117,9 @@ def layers_notice():
             ("forty files", {f"core/a/{i}.hpp": "" for i in range(40)}, False),
             ("forty-one files", {f"core/a/{i}.hpp": "" for i in range(41)}, True)]:
         expect(f"layers: {what}", bool(list(layers.room_faults(texts, texts.get))) == bad)
+    for words, bad in [("Rooms: `a`.", False), ("Rooms: `b`.", True), ("Room a.", True)]:
+        texts = {"core/README.md": words, "core/a/x.hpp": ""}
+        expect(f"layers: {words}", bool(list(layers.unnamed_rooms(texts, texts.get))) == bad)
 
 
 def banned_calls_notice():

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <span>
 
-#include "core/certificate/limit_evidence.hpp"
+#include "core/reach/limit_evidence.hpp"
 #include "firmware_if/protocol/axis_frames.hpp"
 #include "firmware_if/protocol/e2e.hpp"
 #include "hil_replay/board/axis_motion.hpp"

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <random>
 
-#include "core/certificate/look_ahead_path.hpp"
 #include "core/certificate/stop_certificate.hpp"
 #include "core/machine/machine.hpp"
+#include "core/reach/look_ahead_path.hpp"
 #include "firmware_if/protocol/axis_frames.hpp"
 #include "tests/support/between.hpp"
 

@@ -13,7 +13,7 @@
 #include <memory>
 #include <optional>
 
-#include "core/certificate/jog.hpp"
+#include "core/reach/jog.hpp"
 #include "tests/oracle/contact_scene.hpp"
 #include "tests/support/count.hpp"
 #include "tests/support/seed.hpp"

@@ -11,7 +11,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "core/certificate/motion_history.hpp"
+#include "core/reach/motion_history.hpp"
 #include "tests/support/count.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/support/triangle_cases.hpp"

@@ -11,9 +11,9 @@
 #include <memory>
 #include <random>
 
-#include "core/certificate/limit_evidence.hpp"
-#include "core/certificate/look_ahead_path.hpp"
 #include "core/certificate/stop_certificate.hpp"
+#include "core/reach/limit_evidence.hpp"
+#include "core/reach/look_ahead_path.hpp"
 #include "firmware_if/protocol/axis_frames.hpp"
 #include "firmware_if/receiver/axis_receiver.hpp"
 #include "hil_replay/board/approach_driver.hpp"

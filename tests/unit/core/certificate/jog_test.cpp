@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A jog: what the board says of it, whether the axes keep to it, and what the certificate requires
 // of one: that axis, that way, and the clearance there is in place of the margin.
-#include "core/certificate/jog.hpp"
+#include "core/reach/jog.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,10 +11,10 @@
 
 #include "core/base/sincos.hpp"
 #include "core/certificate/stop_certificate.hpp"
-#include "core/certificate/stop_reach.hpp"
 #include "core/guard/distance_need.hpp"
 #include "core/guard/monitor.hpp"
 #include "core/machine/cycle_plan.hpp"
+#include "core/reach/stop_reach.hpp"
 #include "tests/support/containment_fixture.hpp"
 #include "tests/support/table_and_head.hpp"
 

@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "core/certificate/jog.hpp"
+#include "core/reach/jog.hpp"
 #include "tests/support/containment_fixture.hpp"
 #include "tests/support/table_and_head.hpp"
 

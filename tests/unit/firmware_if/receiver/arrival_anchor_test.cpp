@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <array>
 
-#include "core/certificate/motion_history.hpp"
 #include "core/certificate/stop_certificate.hpp"
+#include "core/reach/motion_history.hpp"
 #include "tests/support/receiver_fixture.hpp"
 
 namespace axg {

@@ -7,8 +7,8 @@
 
 #include <algorithm>
 
-#include "core/certificate/jog.hpp"
 #include "core/certificate/stop_certificate.hpp"
+#include "core/reach/jog.hpp"
 #include "core/worst_case/worst_case_batch.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
 

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "core/certificate/stop_limits.hpp"
+#include "core/reach/stop_limits.hpp"
 #include "tests/support/motion_machine.hpp"
 
 namespace axg::test {

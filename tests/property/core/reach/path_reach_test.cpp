@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/base/sincos.hpp"
-#include "core/certificate/look_ahead_path.hpp"
+#include "core/reach/look_ahead_path.hpp"
 #include "hil_replay/board/approach_driver.hpp"
 #include "hil_replay/lab/ablations/ablations.hpp"
 #include "tests/support/count.hpp"

@@ -12,11 +12,11 @@
 #include <type_traits>
 
 #include "core/base/arena.hpp"
-#include "core/certificate/joint_path.hpp"
-#include "core/certificate/motion_history.hpp"
-#include "core/certificate/stop_reach.hpp"
 #include "core/machine/axis_snapshot.hpp"
 #include "core/machine/machine.hpp"
+#include "core/reach/joint_box.hpp"
+#include "core/reach/motion_history.hpp"
+#include "core/reach/stop_reach.hpp"
 
 namespace axg {
 

@@ -3,7 +3,7 @@
 // allows (errors, rounding, jitter, a period that is off, lost samples), never show a broken limit;
 // axes that break one do; and without a stop of the board's own none is ever seen. Wrong rules,
 // made here, fail. AXG_COUNT: healthy samples.
-#include "core/certificate/limit_evidence.hpp"
+#include "core/reach/limit_evidence.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // What positions say about speed and acceleration, against axes that are driven at random and
 // sampled badly: errors of position, jitter of the instant, a period that is off, lost samples.
 // AXG_COUNT: axes.
-#include "core/certificate/motion_history.hpp"
+#include "core/reach/motion_history.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/certificate/stop_reach.hpp"
+#include "core/reach/stop_reach.hpp"
 
 #include <algorithm>
 #include <cmath>

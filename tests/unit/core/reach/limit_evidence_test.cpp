@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Broken limits by hand, each from both sides: what errors explain is no evidence, more is; a stop
 // of the board's own is borne as long as it is one.
-#include "core/certificate/limit_evidence.hpp"
+#include "core/reach/limit_evidence.hpp"
 
 #include <gtest/gtest.h>
 

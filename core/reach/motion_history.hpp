@@ -8,9 +8,9 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "core/certificate/stop_reach.hpp"
 #include "core/machine/axis_snapshot.hpp"
 #include "core/machine/machine.hpp"
+#include "core/reach/stop_reach.hpp"
 
 namespace axg {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The look-ahead path by hand: what is kept of it, what bridges a hole, how far along it a stop can
 // still go, and when the axes have left it.
-#include "core/certificate/look_ahead_path.hpp"
+#include "core/reach/look_ahead_path.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/certificate/look_ahead_path.hpp"
+#include "core/reach/look_ahead_path.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where an axis can go before it rests, against axes that are driven there: random legal motions,
 // braked at a random instant, at the guaranteed deceleration or harder. AXG_COUNT: axes.
-#include "core/certificate/stop_reach.hpp"
+#include "core/reach/stop_reach.hpp"
 
 #include <gtest/gtest.h>
 

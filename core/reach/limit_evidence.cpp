@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/certificate/limit_evidence.hpp"
+#include "core/reach/limit_evidence.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/base/assert.hpp"
 #include "core/base/sincos.hpp"
-#include "core/certificate/stop_certificate.hpp"
+#include "core/reach/stop_limits.hpp"
 
 namespace axg {
 namespace {

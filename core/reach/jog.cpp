@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/certificate/jog.hpp"
+#include "core/reach/jog.hpp"
 
 #include <cmath>
 
 #include "core/base/sincos.hpp"
-#include "core/certificate/stop_reach.hpp"
+#include "core/reach/stop_reach.hpp"
 
 namespace axg {
 
@@ -70,6 +70,25 @@ double jog_turn_reach(const AxisLimits& limits) noexcept {
     AxisLimits in_stop = limits_in_stop(limits);
     in_stop.stop_turns_round = true;
     return forward_reach(in_stop, 0, 0, 0, limits.acceleration_max);
+}
+
+Reach reach_in_jog(const Machine& machine, const SampledMotion& motion, const JogMove& move,
+                   std::uint32_t samples) noexcept {
+    Reach reach{.kind = ReachKind::jog, .is_known = true};
+    for (std::uint32_t i = 0; i < machine.axes.size(); ++i) {
+        const double at = motion.snapshot().position[i], error = motion.held_error(i);
+        ReachRange range{at - error, at + error};
+        if (i == move.axis) {
+            const AxisLimits limits = jog_limits(machine.guard.jog, machine.axes[i]);
+            const double far = jog_reach(limits, free_seconds(machine, samples));
+            const bool turns_round = machine.guard.stop_reversal == StopReversal::jerk_limited;
+            const double back = turns_round ? jog_turn_reach(limits) : 0;
+            range.low -= move.is_negative ? far : back;
+            range.high += move.is_negative ? back : far;
+        }
+        put_reach(range, i, reach.box);
+    }
+    return reach;
 }
 
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/certificate/limit_fact.hpp"
+#include "core/reach/limit_fact.hpp"
 
 namespace axg {
 

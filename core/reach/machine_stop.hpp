@@ -7,7 +7,7 @@
 
 #include <cstdint>
 
-#include "core/certificate/limit_fact.hpp"
+#include "core/reach/limit_fact.hpp"
 
 namespace axg {
 

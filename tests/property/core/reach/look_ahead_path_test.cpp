@@ -3,7 +3,7 @@
 // three axes race for random targets at the limits of speed, acceleration and jerk, frames are
 // lost, and the stop begins as late and is as weak as it may be. Every position until rest has to
 // lie in the pieces. The oracle moves by pieces of constant jerk of its own. AXG_COUNT: stops.
-#include "core/certificate/look_ahead_path.hpp"
+#include "core/reach/look_ahead_path.hpp"
 
 #include <gtest/gtest.h>
 

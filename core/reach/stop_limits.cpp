@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/certificate/stop_limits.hpp"
+#include "core/reach/stop_limits.hpp"
 
 #include <algorithm>
 #include <cmath>

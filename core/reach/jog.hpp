@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// Jogging away from an obstacle: the jog that the board reports, how far its axis can move, the
-// floor of a pair during it, and whether the axes follow it. mm, rad and s. Pure.
-// Source: docs/theory/certificate.md, "Jogging out".
+// Jogging away from an obstacle: the jog that the board reports, the reach of its axis, the rungs
+// of a floor, and whether the axes follow it. mm, rad and s. Pure.
+// Claim: in a jog every position to standstill is in its reach, or JogWatch reports otherwise.
+// Proof: docs/theory/certificate.md, "Jogging out". Tests: unit and oracle jog_test.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
 
-#include "core/certificate/motion_history.hpp"
 #include "core/machine/axis_snapshot.hpp"
 #include "core/machine/cycle_work.hpp"
 #include "core/machine/machine.hpp"
+#include "core/reach/motion_history.hpp"
+#include "core/reach/reach.hpp"
+#include "core/reach/sampled_motion.hpp"
 
 namespace axg {
 
@@ -73,6 +76,11 @@ void put_jog(const JogMove& move, AxisSnapshot& snapshot) noexcept;
 
 /// How far it moves back in a stop that reverses the axis (StopReversal::jerk_limited).
 [[nodiscard]] double jog_turn_reach(const AxisLimits& limits) noexcept;
+
+/// Reach of a jog: all axes at their present positions, and the jog's axis over its whole reach.
+/// @param samples  n of the permit
+[[nodiscard]] Reach reach_in_jog(const Machine& machine, const SampledMotion& motion,
+                                 const JogMove& move, std::uint32_t samples) noexcept;
 
 /// Checks that the axes follow the jog that the board reports, within the errors of position: all
 /// axes are at rest when it begins, then only one moves, never back and never too fast.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/certificate/machine_stop.hpp"
+#include "core/reach/machine_stop.hpp"
 
 namespace axg {
 namespace {

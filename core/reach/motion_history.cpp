@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/certificate/motion_history.hpp"
+#include "core/reach/motion_history.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -11,12 +11,12 @@
 #include <span>
 #include <type_traits>
 
-#include "core/certificate/limit_fact.hpp"
-#include "core/certificate/machine_stop.hpp"
-#include "core/certificate/motion_history.hpp"
-#include "core/certificate/stop_reach.hpp"
 #include "core/machine/axis_snapshot.hpp"
 #include "core/machine/machine.hpp"
+#include "core/reach/limit_fact.hpp"
+#include "core/reach/machine_stop.hpp"
+#include "core/reach/motion_history.hpp"
+#include "core/reach/stop_reach.hpp"
 
 namespace axg {
 
