@@ -204,7 +204,7 @@ void read_frame_ids(MapReader& reader, MachineDraft& draft) {
         all.push_back({can.hashes_in_id, "hashes_in"});
         all.push_back({can.hashes_out_id, "hashes_out"});
     }
-    if (has_session(can)) {
+    if (has_sample_counter(can)) {
         all.push_back({can.session_in_id, "session_in"});
         all.push_back({can.hints_id, "hints"});
         all.push_back({can.operator_in_id, "operator_in"});
@@ -307,7 +307,7 @@ void read_permit_samples(MapReader& reader, MachineDraft& draft) {
     // A hole of 9 classical samples counts as late already, and one of 16 looks like none. With one
     // sample no permit is ever a period ahead of its end.
     const WholeRange range{2, can.format == CanFormat::classical ? 12U : 15U};
-    can.permit_samples = can.permit_version != 2       ? PermitSamples{}
+    can.permit_samples = !has_sample_counter(can)      ? PermitSamples{}
                          : can.look_ahead_samples != 0 ? kPermitSamplesLonger
                                                        : kPermitSamplesUsual;
     draft.states_permit_samples = reader.has("permit_samples");
@@ -315,11 +315,11 @@ void read_permit_samples(MapReader& reader, MachineDraft& draft) {
     if (!read_ends(reader, "permit_samples", range, draft.faults, ends)) {
         return;
     }
-    if (ends[0] != ends[1] && can.permit_version != 2) {
-        reader.report(
-            "permit_samples",
-            "[" + std::to_string(ends[0]) + ", " + std::to_string(ends[1]) + "] with permit: 1",
-            "one integer; only a permit of version 2 carries its own n");
+    if (ends[0] != ends[1] && !has_sample_counter(can)) {
+        reader.report("permit_samples",
+                      "[" + std::to_string(ends[0]) + ", " + std::to_string(ends[1]) +
+                          "] with samples that have no SYNC counter from 1 to 240",
+                      "one integer; the guard sends no permits for these samples");
     } else {
         can.permit_samples = {static_cast<std::uint8_t>(ends[0]),
                               static_cast<std::uint8_t>(ends[1])};
@@ -362,28 +362,28 @@ void read_receiver_rules(MapReader& reader, CanLayout& can) {
     read_small(reader, "counter_delta_max", {1, 13}, can.counter_delta_max);
 }
 
-/// Whether SYNC counts to 240, as the contract of a board requires.
-bool has_counter(const CanLayout& can) noexcept {
-    constexpr std::uint32_t kSyncCounterMax = 240;
-    return can.format != CanFormat::signals && can.sync_counter_max == kSyncCounterMax;
-}
-
-/// Version 2 answers for the lap of a sample.
-void read_permit_version(MapReader& reader, CanLayout& can) {
-    std::uint32_t version = has_counter(can) ? 2 : 1;
-    reader.whole("permit", Need::optional, {1, 2}, version);
-    if (version == 2 && !has_counter(can)) {
-        reader.report("permit", "2 with samples that have no SYNC counter from 1 to 240",
-                      "1, or format: classical or fd, or cia402 with sync_counter: 240");
+/// Version 2 names the lap of its sample; there is no other.
+void check_permit_version(MapReader& reader, const CanLayout& can) {
+    constexpr std::uint32_t kVersion = 2, kMost = 255;
+    std::uint32_t version = kVersion;
+    if (!reader.whole("permit", Need::optional, {0, kMost}, version)) {
         return;
     }
-    can.permit_version = static_cast<std::uint8_t>(version);
+    if (version != kVersion) {
+        reader.report(
+            "permit", std::to_string(version),
+            "2, or no such key; a permit of version 1 has no session, so that a board may "
+            "accept an old one, from before a reset or delayed for a lap of SYNC");
+    } else if (!has_sample_counter(can)) {
+        reader.report("permit", "2 with samples that have no SYNC counter from 1 to 240",
+                      "no such key, or format: classical or fd, or cia402 with sync_counter: 240");
+    }
 }
 
 /// A board whose SYNC counts to 240 has to send hashes by default.
 void read_hashes(MapReader& reader, CanLayout& can) {
     constexpr std::array<std::string_view, 2> kHashes{"none", "required"};
-    std::size_t choice = has_counter(can) ? 1 : 0;
+    std::size_t choice = has_sample_counter(can) ? 1 : 0;
     reader.choice("hashes", Need::optional, kHashes, choice);
     if (choice == 1) {
         can.hashes_in_id = kHashesIn;
@@ -484,7 +484,7 @@ void read_can(MapReader& top, MachineDraft& draft) {
     read_look_ahead(reader, draft);
     read_dbc(reader, draft);
     read_drives(reader, draft);
-    read_permit_version(reader, draft.machine.can);
+    check_permit_version(reader, draft.machine.can);
     read_permit_samples(reader, draft);
     read_latched_age(reader, draft);
     read_receiver_rules(reader, draft.machine.can);

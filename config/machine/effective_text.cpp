@@ -180,8 +180,8 @@ void add_can(Lines& lines, const CanLayout& can) {
         lines.add("can.hashes_in", can.hashes_in_id);
         lines.add("can.hashes_out", can.hashes_out_id);
     }
-    if (has_session(can)) {
-        lines.add("can.permit_version", can.permit_version);
+    if (has_sample_counter(can)) {
+        lines.add("can.permit_version", 2U);
         lines.add("can.session_in", can.session_in_id);
         lines.add("can.hints", can.hints_id);
         lines.add("can.operator_in", can.operator_in_id);

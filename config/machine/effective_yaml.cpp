@@ -201,7 +201,7 @@ void fill_ids(YamlNode& ids, const CanLayout& can, bool is_native) {
     } else {
         fill_none(ids, {"hashes_in", "hashes_out"});
     }
-    if (has_session(can)) {
+    if (has_sample_counter(can)) {
         fill(ids, "session_in", id_of(can.session_in_id));
         fill(ids, "hints", id_of(can.hints_id));
         fill(ids, "operator_in", id_of(can.operator_in_id));
@@ -232,7 +232,11 @@ void fill_can(YamlNode& map, const CanLayout& can) {
     if (is_native) {
         fill(map, "data_ids", ids_of(can.data_ids));
     }
-    fill(map, "permit", value_of(std::uint32_t{can.permit_version}));
+    if (has_sample_counter(can)) {
+        fill(map, "permit", value_of(2U));
+    } else {
+        fill_none(map, {"permit"});
+    }
     fill(map, "hashes", value_of(can.hashes_in_id != 0 ? "required" : "none"));
     fill(map, "permit_samples", ends_of(can.permit_samples.least, can.permit_samples.most));
     fill(map, "latched_age_us", ends_of(can.latched_age.least_us, can.latched_age.most_us));

@@ -85,9 +85,6 @@ void read_cap(MapReader& reader, MachineDraft& draft) {
         reader.report(
             "cap", found + " with frames of another format",
             "none, or can.format classical or fd; other formats do not acknowledge a cap");
-    } else if (!has_session(can)) {
-        reader.report("cap", found + " with can.permit: 1",
-                      "none, or permit: 2; no proof may use the cap of a permit of version 1");
     } else if (!tries_longer(can.permit_samples)) {
         reader.report(
             "cap", found + " with one number as can.permit_samples",

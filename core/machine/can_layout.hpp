@@ -10,6 +10,8 @@
 
 namespace axg {
 
+inline constexpr std::uint8_t kSyncCounterMax = 240;  // CANopen object 0x1019
+
 // classical and fd are ours; signals are frames of other makers without SYNC (a DBC file, or
 // written in the machine file); cia402 are the process data of drives, all latched by one SYNC.
 enum class CanFormat : std::uint8_t { classical, fd, signals, cia402 };
@@ -91,10 +93,10 @@ struct CanLayout {
     std::uint32_t look_ahead_samples = 0;
     std::uint32_t look_ahead_id = 0x481;
     std::uint16_t look_ahead_data_id = 0x0481;
-    std::vector<CanSignal> signals;       // formats signals and cia402
-    std::uint8_t signal_frame_bytes = 8;  // of signals that state none
-    std::uint8_t sync_counter_max = 240;  // object 0x1019; 0: SYNC is empty (cia402 alone)
-    bool guard_sends_sync = false;        // cia402: the guard is the producer, every sample_us
+    std::vector<CanSignal> signals;                   // formats signals and cia402
+    std::uint8_t signal_frame_bytes = 8;              // of signals that state none
+    std::uint8_t sync_counter_max = kSyncCounterMax;  // cia402; 0: SYNC is empty
+    bool guard_sends_sync = false;     // cia402: the guard is the producer, every sample_us
     std::uint32_t sync_window_us = 0;  // cia402: process data later than this are not of this SYNC;
                                        // 0: sample_us
     ValueAge latched_age;
@@ -105,9 +107,7 @@ struct CanLayout {
     std::uint32_t stop_id = 0x001;    // GFC
     std::uint32_t emergency_id = 0x082;
     std::uint32_t heartbeat_out_id = 0x702;
-    // Version of the permit that the guard sends: 1 or 2 (docs/reference/board.md). The next four
-    // ids are for version 2.
-    std::uint8_t permit_version = 1;
+    // The next four ids are of boards with a sample counter: see has_sample_counter.
     std::uint32_t session_in_id = 0x583;
     std::uint32_t hints_id =
         0x682;  // of CANopen's free ids; on the bus only heartbeats yield to it
@@ -124,9 +124,11 @@ struct CanLayout {
     std::uint32_t heartbeat_timeout_us = 65'000;  // of the board; formats of our own only
 };
 
-/// Frames of permit version 2, in addition to those of every version.
-[[nodiscard]] inline bool has_session(const CanLayout& can) noexcept {
-    return can.permit_version == 2;
+/// Whether SYNC counts the samples from 1 to 240. Without it no permit can name its sample: signals
+/// have no SYNC, and a counter that wraps earlier gives an old permit the number of a new sample.
+/// The guard then sends no permits, and the board has no session.
+[[nodiscard]] inline bool has_sample_counter(const CanLayout& can) noexcept {
+    return can.format != CanFormat::signals && can.sync_counter_max == kSyncCounterMax;
 }
 
 /// Format signals: the time between two samples may be off by this. Without a stated limit of

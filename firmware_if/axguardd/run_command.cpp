@@ -166,8 +166,8 @@ void log_unstated(const Machine& machine) {
     }
 }
 
-/// Whether a board was tested for this configuration; it decides nothing. Boards without permits
-/// of version 2 cannot be tested.
+/// Whether a board was tested for this configuration; it decides nothing. Drives and
+/// boards of other makers cannot be tested.
 FoundRecord log_board_test(const RunArguments& arguments, const LoadedMachine& loaded) {
     const std::string path = board_test_path(arguments.state_dir, arguments.bus);
     FoundRecord found = find_record(path, configuration_hashes(loaded.machine, loaded.meshes));

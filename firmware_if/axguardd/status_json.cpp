@@ -118,7 +118,7 @@ void put_state(Line& line, const LiveView& view, const GuardWhy& why, const Mach
     put_pair(line, "withheld_pair", machine, view.withheld.pair);
     put_why(line, "withheld_why", machine, why.withheld);
     line.put(",\"stands\":{},\"confirmed\":{}", view.stands, is_stopped && view.is_confirmed);
-    if (has_session(machine.can)) {
+    if (has_sample_counter(machine.can)) {
         line.put(",\"session\":{}", view.has_session);
     } else {
         line.put(",\"session\":null");

@@ -215,13 +215,13 @@ void BoardPlayer::send_pair(const PermitEdit& edit, bool is_good) {
         return;
     }
     live_ = static_cast<std::uint8_t>(live_ + edit.live_step);
-    Permit2 permit{.word = good_word(),
-                   .sync_counter = echo,
-                   .live_counter = live_,
-                   .known_answer_signature = kKnownAnswerSignature,
-                   .samples = machine_.can.permit_samples.most,
-                   .nonce = edit.is_former_nonce ? former_nonce_ : nonce_,
-                   .lap = session->lap};
+    Permit permit{.word = good_word(),
+                  .sync_counter = echo,
+                  .live_counter = live_,
+                  .known_answer_signature = kKnownAnswerSignature,
+                  .samples = machine_.can.permit_samples.most,
+                  .nonce = edit.is_former_nonce ? former_nonce_ : nonce_,
+                  .lap = session->lap};
     permit = edited(permit, edit);
     const std::int64_t period_us = machine_.can.sample_us;
     const std::int64_t latched_us = record_.newest().latched_us;
@@ -350,7 +350,7 @@ void BoardPlayer::abandon_listening() {
     } else if (has_nonce_) {
         abandon("no valid samples within 5 s: some are lost or late");
     } else {
-        abandon("no session frame within 5 s: the board does not support permit version 2");
+        abandon("no session frame within 5 s: the board sends no session");
     }
 }
 

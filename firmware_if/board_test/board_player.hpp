@@ -61,7 +61,7 @@ enum class PersonTask : std::uint8_t { nothing = 0, arm, arm_jog };
 
 class BoardPlayer {
   public:
-    /// `machine` must outlive it. Precondition: it has a session (permit version 2).
+    /// `machine` must outlive it. Precondition: its frames are classical or fd.
     BoardPlayer(const Machine& machine, const BoardTestOptions& options);
 
     /// A frame of the bus in order of arrival; `is_own`: the echo of one that was sent.

@@ -17,7 +17,7 @@ constexpr std::int64_t kSessionLateUs = 150'000;  // 100 ms, and half of that fo
 constexpr std::size_t kSpeedSamples = 20;
 constexpr double kSpeedSlack = 1.02;
 
-std::uint8_t cap_of(const Permit2& permit, std::size_t axis) noexcept {
+std::uint8_t cap_of(const Permit& permit, std::size_t axis) noexcept {
     const bool is_bound = ((permit.mask >> std::min<std::size_t>(axis, 7)) & 1U) != 0;
     return is_bound ? permit.cap : kPermitCapNone;
 }
@@ -77,7 +77,7 @@ void BoardWatch::on_new_nonce(std::uint32_t nonce, std::int64_t time_us) {
     }
 }
 
-void BoardWatch::on_permit(const Permit2& permit) noexcept {
+void BoardWatch::on_permit(const Permit& permit) noexcept {
     ++sent_count_;
     sent_[sent_count_ % sent_.size()] = permit;
 }
@@ -145,7 +145,7 @@ void BoardWatch::judge_ack(const AxisSnapshot& snapshot) {
         std::uint64_t first = 0;
         Bounds most{};
         for (std::uint64_t i = std::max<std::uint64_t>(oldest, 1); i <= sent_count_; ++i) {
-            const Permit2& permit = sent_[i % sent_.size()];
+            const Permit& permit = sent_[i % sent_.size()];
             if ((permit.live_counter & 15U) != *ack) {
                 continue;
             }

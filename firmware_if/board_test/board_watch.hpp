@@ -12,7 +12,7 @@
 #include "core/machine/machine.hpp"
 #include "firmware_if/board_test/board_cases.hpp"
 #include "firmware_if/board_test/motion_record.hpp"
-#include "firmware_if/protocol/permit2_frames.hpp"
+#include "firmware_if/protocol/permit_frames.hpp"
 #include "firmware_if/receiver/axis_receiver.hpp"
 
 namespace axg {
@@ -45,7 +45,7 @@ class BoardWatch {
     void on_session(const Session& session, std::int64_t time_us);
     /// @param is_braking  the board is in a stop
     void on_sample(const ReceiverEvent& event, const MotionRecord& record, bool is_braking);
-    void on_permit(const Permit2& permit) noexcept;
+    void on_permit(const Permit& permit) noexcept;
     /// A nonce that the board had before is a fault.
     void on_new_nonce(std::uint32_t nonce, std::int64_t time_us);
 
@@ -89,7 +89,7 @@ class BoardWatch {
     bool has_tool_ = false;
     std::optional<std::int64_t> announced_us_;
 
-    std::array<Permit2, 256> sent_{};  // by live counter
+    std::array<Permit, 256> sent_{};  // by live counter
     std::uint64_t sent_count_ = 0;
     std::uint64_t acked_ = 0;  // of those sent, counted from 1; 0: none
     std::deque<Bounds> bounds_;

@@ -13,15 +13,15 @@ void add(PairFrames& to, CanFrame frame, std::int64_t due_us) noexcept {
     to.frames[to.count++] = frame;
 }
 
-Permit2 next_of(Permit2 permit) noexcept {
+Permit next_of(Permit permit) noexcept {
     ++permit.live_counter;
     return permit;
 }
 
 }  // namespace
 
-Permit2 edited(const Permit2& permit, const PermitEdit& edit) noexcept {
-    Permit2 out = permit;
+Permit edited(const Permit& permit, const PermitEdit& edit) noexcept {
+    Permit out = permit;
     out.lap = static_cast<std::uint16_t>(permit.lap - edit.lap_back);
     out.nonce = (permit.nonce ^ edit.nonce_xor) & kNonceMax;
     out.known_answer_signature ^= edit.answer_xor;
@@ -35,10 +35,10 @@ Permit2 edited(const Permit2& permit, const PermitEdit& edit) noexcept {
     return out;
 }
 
-PairFrames frames_of(const CanLayout& can, const Permit2& permit, PairShape shape,
+PairFrames frames_of(const CanLayout& can, const Permit& permit, PairShape shape,
                      std::int64_t now_us) noexcept {
     PairFrames out;
-    auto [plain, inverted] = encode_any_permit2(can, permit, now_us);
+    auto [plain, inverted] = encode_any_permit(can, permit, now_us);
     switch (shape) {
         case PairShape::silence:
         case PairShape::again:  // the player sends its stored pair
@@ -58,14 +58,14 @@ PairFrames frames_of(const CanLayout& can, const Permit2& permit, PairShape shap
             break;
         case PairShape::of_another:
             add(out, plain, now_us);
-            add(out, encode_any_permit2(can, next_of(permit), now_us)[1], now_us);
+            add(out, encode_any_permit(can, next_of(permit), now_us)[1], now_us);
             break;
         case PairShape::late:
             add(out, plain, now_us);
             add(out, inverted, now_us + can.sample_us + can.sample_us / 4);
             break;
         case PairShape::interleaved: {
-            const auto other = encode_any_permit2(can, next_of(permit), now_us);
+            const auto other = encode_any_permit(can, next_of(permit), now_us);
             add(out, plain, now_us);
             add(out, other[0], now_us);
             add(out, inverted, now_us + kOrderUs);

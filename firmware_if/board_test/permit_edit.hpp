@@ -7,7 +7,7 @@
 
 #include "core/machine/can_layout.hpp"
 #include "firmware_if/can/can_frame.hpp"
-#include "firmware_if/protocol/permit2_frames.hpp"
+#include "firmware_if/protocol/permit_frames.hpp"
 
 namespace axg {
 
@@ -53,10 +53,10 @@ struct PairFrames {
 
 /// @param permit   with the fields of the edit already
 /// @param now_us   when the first of them may leave
-[[nodiscard]] PairFrames frames_of(const CanLayout& can, const Permit2& permit, PairShape shape,
+[[nodiscard]] PairFrames frames_of(const CanLayout& can, const Permit& permit, PairShape shape,
                                    std::int64_t now_us) noexcept;
 
 /// The good permit with every field that the edit names; `permit` has echo, nonce and lap.
-[[nodiscard]] Permit2 edited(const Permit2& permit, const PermitEdit& edit) noexcept;
+[[nodiscard]] Permit edited(const Permit& permit, const PermitEdit& edit) noexcept;
 
 }  // namespace axg

@@ -217,7 +217,7 @@ axg_proof proof_of(const axg_guard& guard) noexcept {
     if (guard.evaluated == 0) {
         return proof;
     }
-    const axg::Permit2 permit = axg::permit2_of(result, 0, guard.last.sync_counter);
+    const axg::Permit permit = axg::permit_of(result, 0, guard.last.sync_counter);
     proof.sync_counter = permit.sync_counter;
     proof.is_proven = result.has_permit ? 1 : 0;
     proof.samples = permit.samples;

@@ -63,7 +63,7 @@ axg_terms board_terms(const Machine& machine, const ConfigurationHashes& hashes)
     std::copy(hashes.of.begin(), hashes.of.end(), out.hashes);
     out.axis_count = static_cast<std::uint32_t>(machine.axes.size());
     out.first_tool = machine.first_tool;
-    out.permit_version = can.permit_version;
+    out.permit_version = has_sample_counter(can) ? 2 : 0;
     out.permit_samples_max = can.permit_samples.most;
     out.takes_samples = takes_samples(machine) ? 1 : 0;
     out.is_independent = machine.guard.promise == StopPromise::independent ? 1 : 0;

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "core/base/finite.hpp"
-#include "firmware_if/protocol/permit2_frames.hpp"
+#include "firmware_if/protocol/permit_frames.hpp"
 
 namespace axg {
 namespace {

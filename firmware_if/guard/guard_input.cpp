@@ -56,8 +56,8 @@ void GuardNode::on_arrival(const CanArrival& arrival, std::int64_t now_us) noexc
         on_foreign(frame, "a stop frame from another sender", GuardFault::foreign_stop, now_us);
         return;
     }
-    if (has_session(machine_.can) && frame.id == machine_.can.operator_in_id && !frame.error &&
-        !frame.extended && !frame.remote) {
+    if (has_sample_counter(machine_.can) && frame.id == machine_.can.operator_in_id &&
+        !frame.error && !frame.extended && !frame.remote) {
         on_operator(frame, now_us);
         return;
     }

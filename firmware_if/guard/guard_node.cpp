@@ -86,7 +86,7 @@ GuardNode::GuardNode(const Machine& machine, LiveOptions options, CanTransport& 
       heartbeat_us_(now_us),
       phase_us_(now_us),
       status_us_(now_us - kOperatorStatusUs),
-      status_due_us_(has_session(machine.can) ? now_us : INT64_MAX),
+      status_due_us_(has_sample_counter(machine.can) ? now_us : INT64_MAX),
       line_(options.line),
       supposes_arming_(options.supposes_arming) {
     wire_.set_time(now_us);
@@ -217,7 +217,7 @@ void GuardNode::on_result(const LiveResult& live_result, std::int64_t now_us) no
             result.reason == StopReason::none ? WithheldPermit{.why = Why::period} : withheld_;
         note_period(now_us);
     }
-    if (has_session(machine_.can)) {
+    if (has_sample_counter(machine_.can)) {
         hints_ = hints_of(live_result.result, live_result.sync_counter);
         has_hints_ = true;
     }
@@ -389,7 +389,7 @@ void GuardNode::send_stop(bool is_first, std::int64_t now_us) noexcept {
     for (const std::uint32_t id : machine_.can.quick_stop_ids) {
         outbox_.put_quick_stop(encode_quick_stop(id, now_us));
     }
-    if (has_session(machine_.can) && is_first) {
+    if (has_sample_counter(machine_.can) && is_first) {
         put_stop_word(now_us);
     }
     send_waiting_stop(now_us);

@@ -27,7 +27,7 @@
 #include "firmware_if/protocol/guard_frames.hpp"
 #include "firmware_if/protocol/handshake.hpp"
 #include "firmware_if/protocol/hints_frame.hpp"
-#include "firmware_if/protocol/permit2_frames.hpp"
+#include "firmware_if/protocol/permit_frames.hpp"
 #include "firmware_if/receiver/axis_receiver.hpp"
 
 namespace axg {

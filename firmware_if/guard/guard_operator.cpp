@@ -133,7 +133,7 @@ void GuardNode::note_operator(std::uint32_t kind, const char* words, std::int64_
 
 /// Every 100 ms, and after a change; at most one every kOperatorStatusUsMin.
 void GuardNode::send_status(std::int64_t now_us) noexcept {
-    if (!has_session(machine_.can)) {
+    if (!has_sample_counter(machine_.can)) {
         return;
     }
     OperatorStatus status = status_of(operator_, guard_.phase, now_us);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The permits of the guard node, in both versions, and the session that version 2 needs.
+// The permits of the guard node, and the board's session that they name.
 #include <algorithm>
 
 #include "firmware_if/guard/guard_node.hpp"
@@ -14,19 +14,16 @@ constexpr std::int64_t kSessionNoteUs = 1'000'000;
 void GuardNode::send_permit(const LiveResult& live_result, std::int64_t now_us) noexcept {
     const CanLayout& can = machine_.can;
     const std::uint8_t echo = live_result.sync_counter;
-    const Permit permit = permit_of(live_result.result, ++live_counter_, echo);
-    if (has_session(can)) {
+    Permit permit = permit_of(live_result.result, ++live_counter_, echo);
+    if (has_sample_counter(can)) {
         const SampleSession session = receiver_.session_of(echo).value_or(SampleSession{});
-        Permit2 answered = permit2_of(live_result.result, live_counter_, echo);
-        answered.nonce = session.nonce;
-        answered.lap = session.lap;
+        permit.nonce = session.nonce;
+        permit.lap = session.lap;
         if (keeps_cap()) {  // a jog has none
-            const bool has_cap = answered.word != PermitWord::jog;
+            const bool has_cap = permit.word != PermitWord::jog;
             ledger_.note_sent(live_counter_,
-                              has_cap ? caps_of_permit(answered.cap, answered.mask) : rapid_caps());
+                              has_cap ? caps_of_permit(permit.cap, permit.mask) : rapid_caps());
         }
-        outbox_.put_permit(encode_permit2(can, answered, now_us));
-    } else {
         outbox_.put_permit(encode_permit(can, permit, now_us));
     }
     ++counters_.permits;
@@ -39,14 +36,14 @@ void GuardNode::send_permit(const LiveResult& live_result, std::int64_t now_us) 
 void GuardNode::put_stop_word(std::int64_t now_us) noexcept {
     const std::uint8_t echo = std::max<std::uint8_t>(receiver_.newest_sync_counter(), 1);
     const SampleSession session = receiver_.session_of(echo).value_or(SampleSession{});
-    outbox_.put_stop_word(encode_permit2(machine_.can,
-                                         {.word = PermitWord::stop,
-                                          .sync_counter = echo,
-                                          .live_counter = ++live_counter_,
-                                          .known_answer_signature = kKnownAnswerSignature,
-                                          .nonce = session.nonce,
-                                          .lap = session.lap},
-                                         now_us));
+    outbox_.put_stop_word(encode_permit(machine_.can,
+                                        {.word = PermitWord::stop,
+                                         .sync_counter = echo,
+                                         .live_counter = ++live_counter_,
+                                         .known_answer_signature = kKnownAnswerSignature,
+                                         .nonce = session.nonce,
+                                         .lap = session.lap},
+                                        now_us));
 }
 
 /// The board waits on its path, with permits and without a stop, until a crawl is proven. Informs
@@ -75,13 +72,14 @@ void GuardNode::note_own_stop() noexcept {
 
 bool GuardNode::waits_for_board() const noexcept {
     const std::optional<std::uint32_t> nonce = newest_nonce();
-    return own_stop_.is_on && has_session(machine_.can) && (!nonce || nonce == own_stop_.nonce);
+    return own_stop_.is_on && has_sample_counter(machine_.can) &&
+           (!nonce || nonce == own_stop_.nonce);
 }
 
-/// The CRC of a version 2 permit covers the board's nonce and the sample's lap: the board would
+/// The CRC of a permit covers the board's nonce and the sample's lap: the board would
 /// refuse a permit without them. Logged once a second.
 bool GuardNode::lacks_session(const LiveResult& live_result, std::int64_t now_us) noexcept {
-    if (!has_session(machine_.can)) {
+    if (!has_sample_counter(machine_.can)) {
         return false;
     }
     if (receiver_.session_of(live_result.sync_counter)) {

@@ -47,7 +47,7 @@ std::uint32_t live_ids(const Machine& machine, std::span<std::uint32_t> out) noe
 bool is_guard_id(const CanLayout& can, std::uint32_t id) noexcept {
     return id == can.permit_id || id == can.permit_id + 1 || id == can.emergency_id ||
            id == can.heartbeat_out_id || (id == can.hashes_out_id && id != 0) ||
-           (has_session(can) && (id == can.hints_id || id == can.operator_out_id)) ||
+           (has_sample_counter(can) && (id == can.hints_id || id == can.operator_out_id)) ||
            (can.guard_sends_sync && id == can.sync_id) ||
            std::find(can.quick_stop_ids.begin(), can.quick_stop_ids.end(), id) !=
                can.quick_stop_ids.end();

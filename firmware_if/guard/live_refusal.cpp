@@ -13,12 +13,6 @@ std::vector<std::string> live_refusals(const Machine& machine) {
     if (const std::string refusal = obeyed_by_refusal(machine); !refusal.empty()) {
         out.push_back("guard.obeyed_by: " + refusal);
     }
-    // Without a SYNC counter there is no version 2, and nothing obeys the permits anyway.
-    if (!has_session(machine.can) && has_sample_counter(machine.can)) {
-        out.emplace_back(
-            "can.permit: 1 has no session, so that a board may accept an old permit, from before a "
-            "reset or delayed for a lap of SYNC. A live guard needs 2.");
-    }
     if (std::string refusal = standstill_refusal(machine); !refusal.empty()) {
         out.push_back(std::move(refusal));
     }

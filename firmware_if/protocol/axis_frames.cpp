@@ -8,7 +8,7 @@
 #include "core/base/sincos.hpp"
 #include "core/machine/can_id.hpp"
 #include "firmware_if/protocol/e2e.hpp"
-#include "firmware_if/protocol/permit2_frames.hpp"
+#include "firmware_if/protocol/permit_frames.hpp"
 #include "firmware_if/protocol/signal_frames.hpp"
 #include "firmware_if/protocol/wire.hpp"
 

@@ -8,9 +8,9 @@
 #include <cstdint>
 #include <span>
 
-#include "core/reach/look_ahead_path.hpp"
 #include "core/machine/axis_snapshot.hpp"
 #include "core/machine/machine.hpp"
+#include "core/reach/look_ahead_path.hpp"
 #include "firmware_if/can/can_frame.hpp"
 
 namespace axg {
@@ -22,7 +22,6 @@ inline constexpr std::uint32_t kFramesPerSnapshotMax =
     kAxisFramesMax + 4;  // with SYNC, heartbeat, look-ahead path and session
 inline constexpr std::uint32_t kFdAxesMax = 13;            // 12 + 4 * 13 = 64 bytes
 inline constexpr std::uint32_t kLookAheadAxesMax = 7;      // 6 + 8 * 7 = 62 bytes
-inline constexpr std::uint8_t kSyncCounterMax = 240;       // CANopen object 0x1019
 inline constexpr std::int32_t kNoPosition24 = -(1 << 23);  // marker: no position
 inline constexpr std::int32_t kNoPosition32 = INT32_MIN;
 inline constexpr double kClassicalUnitMm = 1.0e-3;  // 1 um
@@ -173,16 +172,15 @@ struct EncodeResult {
 struct EncoderOptions {
     std::uint32_t bit_rate = 1'000'000;  // arbitration rate; fd data at five times that
     std::int64_t spacing_us = 0;         // idle time the board leaves between its frames
-    // With permit 2: sends the session of a board that a person armed once. False: the caller sends
-    // it.
+    // Sends the session of a board that a person armed once. False: the caller sends it.
     bool says_session = true;
     std::uint32_t nonce = 0x5E5510;
 };
 
-/// Plays the motion board: SYNC, the axis frames, the heartbeat every 10 ms and with permit 2 the
-/// session every 100 ms and with each lap (signals: the axis frames only; cia402: no heartbeat).
-/// SYNC ends at snapshot.latched_us; the others follow by their bus time, or evenly spread where
-/// they do not fit into one sample period, which is possible only in a simulation.
+/// Plays the motion board: SYNC, the axis frames, the heartbeat every 10 ms, the session every 100
+/// ms and with each lap (signals: the axis frames only; cia402: no heartbeat). SYNC ends at
+/// snapshot.latched_us; the others follow by their bus time, or evenly spread where they do not fit
+/// into one sample period, which is possible only in a simulation.
 class AxisEncoder {
   public:
     explicit AxisEncoder(const Machine& machine, EncoderOptions options = {}) noexcept;

@@ -192,7 +192,7 @@ LayoutStatus check_ids(const Machine& machine) noexcept {
         ids[count++] = can.hashes_in_id;
         ids[count++] = can.hashes_out_id;
     }
-    if (has_session(can)) {
+    if (has_sample_counter(can)) {
         for (const std::uint32_t id :
              {can.session_in_id, can.hints_id, can.operator_in_id, can.operator_out_id}) {
             ids[count++] = id;
@@ -348,7 +348,7 @@ AxisFrameSet make_frame_set(const Machine& machine) noexcept {
     set.sync_id = can.sync_id;
     set.heartbeat_id = can.heartbeat_in_id;
     set.sync_counter_max = can.format == CanFormat::cia402 ? can.sync_counter_max : kSyncCounterMax;
-    set.session_id = has_session(can) && has_sample_counter(can) ? can.session_in_id : 0;
+    set.session_id = has_sample_counter(can) ? can.session_in_id : 0;
     const double unit_mm = can.format == CanFormat::fd ? kFdUnitMm : kClassicalUnitMm;
     for (std::uint32_t i = 0; i < set.axis_count; ++i) {
         const Axis& axis = machine.axes[i];

@@ -33,24 +33,6 @@ GuardFrameStatus shape_of(const CanFrame& frame, std::uint32_t id, std::uint8_t 
     return has_shape(frame, length) ? GuardFrameStatus::ok : GuardFrameStatus::bad_shape;
 }
 
-bool is_word(std::uint8_t byte) noexcept {
-    return byte == static_cast<std::uint8_t>(PermitWord::run) ||
-           byte == static_cast<std::uint8_t>(PermitWord::slow) ||
-           byte == static_cast<std::uint8_t>(PermitWord::jog) ||
-           byte == static_cast<std::uint8_t>(PermitWord::stop);
-}
-
-Permit read_permit(const CanFrame& frame) noexcept {
-    const auto& d = frame.data;
-    return {static_cast<PermitWord>(d[0]),
-            d[1],
-            d[2],
-            static_cast<std::uint16_t>(get_little(d.data() + 3, 2)),
-            d[5],
-            d[6],
-            d[7]};
-}
-
 EmergencyCode code_of_verdict(StopReason reason) noexcept {
     switch (reason) {
         case StopReason::predicted:
@@ -79,47 +61,6 @@ EmergencyCode code_of_verdict(StopReason reason) noexcept {
 }
 
 }  // namespace
-
-std::uint8_t permit_clearance(double clearance_mm) noexcept {
-    const double dmm = std::floor(clearance_mm * 10);
-    return dmm > 0 ? static_cast<std::uint8_t>(std::min(dmm, double{kClearanceDmmMax})) : 0;
-}
-
-Permit permit_of(const CycleResult& result, std::uint8_t live_counter,
-                 std::uint8_t sync_counter) noexcept {
-    const Advisories& advisories = result.advisories;
-    Permit permit;
-    permit.word = !result.has_permit                                   ? PermitWord::stop
-                  : result.is_jog                                      ? PermitWord::jog
-                  : advisories.clearance_level <= ClearanceLevel::slow ? PermitWord::slow
-                                                                       : PermitWord::run;
-    permit.sync_counter = sync_counter;
-    permit.live_counter = live_counter;
-    permit.known_answer_signature = result.known_answer_signature;
-    permit.speed_cap = result.has_permit ? advisories.speed_cap : 0;
-    const std::uint32_t pair = result.has_permit ? advisories.pair : result.pair;
-    permit.pair = static_cast<std::uint8_t>(std::min<std::uint32_t>(pair, 255));
-    permit.clearance_dmm = result.has_permit ? permit_clearance(advisories.distance_mm) : 0;
-    return permit;
-}
-
-std::array<CanFrame, 2> encode_permit(const CanLayout& layout, const Permit& permit,
-                                      std::int64_t time_us) noexcept {
-    CanFrame plain = plain_frame(layout.permit_id, 8, time_us);
-    plain.data[0] = static_cast<std::uint8_t>(permit.word);
-    plain.data[1] = permit.sync_counter;
-    plain.data[2] = permit.live_counter;
-    put_little(plain.data.data() + 3, permit.known_answer_signature, 2);
-    plain.data[5] = permit.speed_cap;
-    plain.data[6] = permit.pair;
-    plain.data[7] = permit.clearance_dmm;
-    CanFrame twin = plain;
-    twin.id = layout.permit_id + 1;
-    for (std::size_t i = 0; i < 8; ++i) {
-        twin.data[i] = static_cast<std::uint8_t>(~plain.data[i]);
-    }
-    return {plain, twin};
-}
 
 CanFrame encode_stop(const CanLayout& layout, std::int64_t time_us) noexcept {
     return plain_frame(layout.stop_id, 0, time_us);
@@ -244,88 +185,6 @@ GuardFrameStatus decode_guard_heartbeat(const CanLayout& layout, const CanFrame&
     }
     out = heartbeat;
     return GuardFrameStatus::ok;
-}
-
-const char* to_text(PermitFault fault) noexcept {
-    switch (fault) {
-        case PermitFault::none:
-            return "none";
-        case PermitFault::bad_shape:
-            return "a permit frame is not a classical data frame of 8 bytes";
-        case PermitFault::twin_missing:
-            return "the inverted frame is missing";
-        case PermitFault::twin_alone:
-            return "an inverted frame came without its plain one";
-        case PermitFault::twin_late:
-            return "the inverted frame came too late";
-        case PermitFault::twin_differs:
-            return "the inverted frame is not the plain one inverted";
-        case PermitFault::bad_word:
-            return "the first byte is no permit word, or the echo no SYNC counter";
-        case PermitFault::live_counter:
-            return "the live counter did not advance";
-        case PermitFault::period:
-            return "no permit within its period";
-    }
-    return "unknown";
-}
-
-PermitChecker::PermitChecker(const CanLayout& layout, PermitTimes times) noexcept
-    : id_(layout.permit_id), times_(times), live_(256, 3, 2) {}
-
-PermitChecker::Result PermitChecker::on_time(std::int64_t now_us) noexcept {
-    if (!has_pair_ || now_us - pair_us_ <= times_.period_max_us) {
-        return {};
-    }
-    has_pair_ = false;
-    return {false, PermitFault::period, {}};
-}
-
-PermitChecker::Result PermitChecker::on_frame(const CanFrame& frame) noexcept {
-    const Result silence = on_time(frame.time_us);
-    if (frame.error || frame.extended || (frame.id != id_ && frame.id != id_ + 1)) {
-        return silence;
-    }
-    const auto fail = [&](PermitFault fault) {
-        has_plain_ = has_pair_ = false;
-        return Result{false, fault, {}};
-    };
-    if (!has_shape(frame, 8)) {
-        return fail(PermitFault::bad_shape);
-    }
-    if (frame.id == id_) {
-        const bool had_plain = has_plain_;
-        plain_ = frame;
-        has_plain_ = true;
-        if (had_plain) {
-            has_pair_ = false;
-            return {false, PermitFault::twin_missing, {}};
-        }
-        return silence;
-    }
-    if (!has_plain_) {
-        return fail(PermitFault::twin_alone);
-    }
-    if (frame.time_us - plain_.time_us > times_.twin_max_us) {
-        return fail(PermitFault::twin_late);
-    }
-    for (std::size_t i = 0; i < 8; ++i) {
-        if ((plain_.data[i] ^ frame.data[i]) != 0xFF) {
-            return fail(PermitFault::twin_differs);
-        }
-    }
-    const Permit permit = read_permit(plain_);
-    if (!is_word(plain_.data[0]) || permit.sync_counter < 1 || permit.sync_counter > 240) {
-        return fail(PermitFault::bad_word);
-    }
-    const Sequence sequence = live_.next(permit.live_counter);
-    if (sequence == Sequence::repeated || sequence == Sequence::wrong) {
-        return fail(PermitFault::live_counter);
-    }
-    has_plain_ = false;
-    has_pair_ = true;
-    pair_us_ = frame.time_us;
-    return {true, PermitFault::none, permit};
 }
 
 }  // namespace axg

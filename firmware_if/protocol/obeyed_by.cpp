@@ -21,12 +21,6 @@ std::string without_counter(const CanLayout& can) {
 
 }  // namespace
 
-bool has_sample_counter(const CanLayout& can) noexcept {
-    // Signals are read without SYNC. A counter that wraps earlier gives an old permit the number of
-    // a new sample.
-    return can.format != CanFormat::signals && can.sync_counter_max == kSyncCounterMax;
-}
-
 std::string obeyed_by_refusal(const Machine& machine) {
     switch (machine.guard.obeyed_by) {
         case ObeyedBy::board:

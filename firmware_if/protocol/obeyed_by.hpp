@@ -10,9 +10,6 @@
 
 namespace axg {
 
-/// Whether a permit names its sample by the SYNC counter that board and guard both have: 1 to 240.
-[[nodiscard]] bool has_sample_counter(const CanLayout& can) noexcept;
-
 /// The reason why no part obeys the permits of this machine within the time that its certificates
 /// suppose, and the change to make; empty: the board obeys them.
 [[nodiscard]] std::string obeyed_by_refusal(const Machine& machine);

@@ -23,7 +23,7 @@ bool is_action(std::uint8_t byte) noexcept {
            byte == static_cast<std::uint8_t>(OperatorAction::arm);
 }
 
-bool is_sound(const Permit2& permit) noexcept {
+bool is_sound(const Permit& permit) noexcept {
     const bool is_stop = permit.word == PermitWord::stop;
     const bool has_word = is_stop || permit.word == PermitWord::run ||
                           permit.word == PermitWord::slow || permit.word == PermitWord::jog;
@@ -34,8 +34,8 @@ bool is_sound(const Permit2& permit) noexcept {
 
 }  // namespace
 
-std::optional<SeenPermit2> read_permit2(const CanLayout& layout, const CanFrame& plain,
-                                        const CanFrame& twin) noexcept {
+std::optional<SeenPermit> read_permit(const CanLayout& layout, const CanFrame& plain,
+                                      const CanFrame& twin) noexcept {
     if (!has_shape(plain, layout.permit_id, kPermitBytes) ||
         !has_shape(twin, layout.permit_id + 1, kPermitBytes)) {
         return std::nullopt;
@@ -46,7 +46,7 @@ std::optional<SeenPermit2> read_permit2(const CanLayout& layout, const CanFrame&
             return std::nullopt;
         }
     }
-    SeenPermit2 seen;
+    SeenPermit seen;
     seen.permit.word = static_cast<PermitWord>(data[0]);
     seen.permit.sync_counter = data[1];
     seen.permit.live_counter = data[2];
@@ -59,8 +59,8 @@ std::optional<SeenPermit2> read_permit2(const CanLayout& layout, const CanFrame&
     return is_sound(seen.permit) ? std::optional(seen) : std::nullopt;
 }
 
-std::uint16_t answer_of(const CanLayout& layout, const Permit2& permit) noexcept {
-    const CanFrame plain = encode_any_permit2(layout, permit, 0)[0];
+std::uint16_t answer_of(const CanLayout& layout, const Permit& permit) noexcept {
+    const CanFrame plain = encode_any_permit(layout, permit, 0)[0];
     return static_cast<std::uint16_t>(get_little(plain.data.data() + 3, 2));
 }
 

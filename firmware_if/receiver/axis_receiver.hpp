@@ -47,7 +47,7 @@ struct ReceiverEvent {
     PathPoints look_ahead;  // valid for kind look_ahead: samples counted as in the snapshots
 };
 
-/// The CRC of a version 2 permit covers these: the board's nonce, and the lap of the sample.
+/// The CRC of a permit covers these: the board's nonce, and the lap of the sample.
 struct SampleSession {
     std::uint32_t nonce = 0;
     std::uint16_t lap = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The session that the board sends, and with it the lap of each sample. The CRC of a version 2
-// permit covers both. Source: docs/reference/board.md, "Session".
+// The session that the board sends, and with it the lap of each sample. The CRC of a permit covers
+// both. Source: docs/reference/board.md, "Session".
 #include "firmware_if/receiver/axis_receiver.hpp"
 
 namespace axg {

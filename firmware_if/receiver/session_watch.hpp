@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "firmware_if/protocol/axis_frames.hpp"
-#include "firmware_if/protocol/permit2_frames.hpp"
+#include "firmware_if/protocol/permit_frames.hpp"
 
 namespace axg {
 

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <iterator>
 
-#include "core/guard/monitor.hpp"
-
 namespace axg {
 
 namespace {
@@ -23,12 +21,6 @@ std::uint64_t library_us(std::int64_t board_us) noexcept {
 
 std::int64_t board_us(std::uint64_t library_us) noexcept {
     return static_cast<std::int64_t>(library_us) - kPowerUpUs;
-}
-
-/// SCT and SRVT in periods of this board.
-PermitTimes times_of(const CanLayout& layout) noexcept {
-    return {.period_max_us = 4 * std::int64_t{layout.sample_us},
-            .twin_max_us = 2 * std::int64_t{layout.sample_us}};
 }
 
 /// Converts a frame to the library's type.
@@ -62,16 +54,12 @@ PermitWatch::PermitWatch(const CanLayout& layout, bool is_jogging, std::int64_t 
     : layout_(layout),
       hashes_(hashes),
       cap_(cap),
-      checker_(layout, times_of(layout)),
       has_true_timer_(permit_us == 0),
       holds_us_(permit_us != 0 ? permit_us
                                : std::int64_t{layout.permit_samples.least} * layout.sample_us),
       is_jogging_(is_jogging) {
-    latched_us_.fill(INT64_MIN);
     power_up();
-    if (has_session(layout_)) {
-        arm(0);
-    }
+    arm(0);
 }
 
 /// MotionBoard handles frames and axes: the library only judges permits and hashes.
@@ -96,10 +84,6 @@ void PermitWatch::arm(std::int64_t now_us) noexcept {
 }
 
 void PermitWatch::on_latch(std::uint8_t sync_counter, std::int64_t latched_us) noexcept {
-    latched_us_[sync_counter] = latched_us;
-    if (!has_session(layout_)) {
-        return;
-    }
     lap_ = static_cast<std::uint16_t>(lap_ + (sync_counter < newest_sync_ ? 1 : 0));
     newest_sync_ = sync_counter;
     const axg_board_sample sample{library_us(latched_us), lap_, sync_counter};
@@ -109,7 +93,7 @@ void PermitWatch::on_latch(std::uint8_t sync_counter, std::int64_t latched_us) n
 bool PermitWatch::take_session(std::int64_t now_us, CanFrame& out) noexcept {
     const auto data_id = static_cast<std::uint16_t>(layout_.session_in_id);
     axg_board_can_frame made{};
-    if (!has_session(layout_) || !axg_board_is_session_due(&board_, library_us(now_us)) ||
+    if (!axg_board_is_session_due(&board_, library_us(now_us)) ||
         !axg_board_encode_session(&board_, {layout_.session_in_id, data_id}, library_us(now_us),
                                   &made)) {
         return false;
@@ -131,7 +115,7 @@ bool PermitWatch::take_hash(std::int64_t now_us, CanFrame& out) noexcept {
 }
 
 std::uint8_t PermitWatch::ack_flags() const noexcept {
-    if (!has_session(layout_) || is_jogging_) {
+    if (is_jogging_) {
         return 0;
     }
     axg_board_says says{};
@@ -168,22 +152,16 @@ std::uint8_t PermitWatch::keep_cap(std::uint8_t wanted, std::int64_t now_us) noe
 
 void PermitWatch::begin(std::int64_t now_us) noexcept {
     is_moving_ = true;
-    if (has_session(layout_) && has_true_timer_) {
+    if (has_true_timer_) {
         axg_board_moves(&board_, true, library_us(now_us));
     }
 }
 
 void PermitWatch::rest(std::int64_t now_us) noexcept {
-    if (has_session(layout_)) {
-        axg_board_moves(&board_, false, library_us(now_us));
-    }
+    axg_board_moves(&board_, false, library_us(now_us));
 }
 
 void PermitWatch::acknowledge(std::int64_t now_us) noexcept {
-    if (!has_session(layout_)) {
-        *this = PermitWatch(layout_, is_jogging_, has_true_timer_ ? 0 : holds_us_, hashes_, cap_);
-        return;
-    }
     if (now_us - last_stop_us_ < kQuietPeriods * layout_.sample_us) {
         return;
     }
@@ -193,24 +171,6 @@ void PermitWatch::acknowledge(std::int64_t now_us) noexcept {
 }
 
 void PermitWatch::on_frame(const CanFrame& frame) noexcept {
-    const bool is_hash = layout_.hashes_out_id != 0 && frame.id == layout_.hashes_out_id;
-    if (has_session(layout_) || is_hash) {
-        hear(frame);
-        return;
-    }
-    if (decode_stop(layout_, frame) == GuardFrameStatus::ok) {
-        stopped_us_ = stopped_us_ == kNever ? frame.time_us : stopped_us_;
-        return;
-    }
-    const PermitChecker::Result result = checker_.on_frame(frame);
-    if (result.is_permit) {
-        on_permit(result.permit, frame.time_us);
-    } else if (result.fault != PermitFault::none) {
-        ++refused_;
-    }
-}
-
-void PermitWatch::hear(const CanFrame& frame) noexcept {
     if (frame.error || frame.extended || frame.remote) {
         return;
     }
@@ -259,31 +219,6 @@ void PermitWatch::note_permit(std::uint64_t now_us, std::uint8_t samples) noexce
     valid_until_us_ = board_us(motion.end_us);
     certified_us_ = valid_until_us_ - std::int64_t{samples} * layout_.sample_us;
     valid_until_us_ = has_true_timer_ ? valid_until_us_ : certified_us_ + holds_us_;
-}
-
-void PermitWatch::on_permit(const Permit& permit, std::int64_t now_us) noexcept {
-    if (permit.word == PermitWord::stop) {
-        // Before the first permit this word means "not yet": no motion exists to be stopped.
-        stopped_us_ = stopped_us_ == kNever && permits_ > 0 ? now_us : stopped_us_;
-        return;
-    }
-    const std::int64_t latched_us = latched_us_[permit.sync_counter];
-    const bool is_known = latched_us != INT64_MIN;
-    const bool is_too_late = is_moving_ && now_us >= valid_until_us_;
-    const bool is_for_this = (permit.word == PermitWord::jog) == is_jogging_;
-    if (permit.known_answer_signature != kKnownAnswerSignature || !is_for_this || !is_known ||
-        is_too_late || latched_us + holds_us_ <= now_us) {
-        ++refused_;
-        return;
-    }
-    ++permits_;
-    if (latched_us > certified_us_) {
-        certified_us_ = latched_us;
-        speed_cap_ = permit.speed_cap;
-        samples_ = layout_.permit_samples.least;
-        is_slow_ = permit.word == PermitWord::slow;
-        valid_until_us_ = latched_us + holds_us_;
-    }
 }
 
 }  // namespace axg

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads the guard's frames for the simulated motion board, which may move only while a valid permit
-// is in force. The library for boards, firmware_if/board, reads permits of version 2, as in
-// firmware; version 1 follows docs/reference/protocol.md, "From the guard".
+// is in force. The library for boards, firmware_if/board, reads them, as in firmware.
 #pragma once
 
 #include <array>
@@ -11,7 +10,6 @@
 #include "core/machine/machine.hpp"
 #include "firmware_if/board/axguard_board.h"
 #include "firmware_if/protocol/axis_frames.hpp"
-#include "firmware_if/protocol/guard_frames.hpp"
 
 namespace axg {
 
@@ -28,18 +26,18 @@ class PermitWatch {
     ///     a jog they do not count
     /// @param permit_us  validity of a permit on the board's timer; 0: n T, as required
     /// @param hashes  of the board's machine, used if the layout has their ids
-    /// @param cap  version 2: whether the board bounds all axes by the cap of the permits
+    /// @param cap  whether the board bounds all axes by the cap of the permits
     explicit PermitWatch(const CanLayout& layout, bool is_jogging = false,
                          std::int64_t permit_us = 0, const ConfigurationHashes& hashes = {},
                          CapPromise cap = CapPromise::none) noexcept;
 
     /// The board latched a sample and sends it under this SYNC counter.
     void on_latch(std::uint8_t sync_counter, std::int64_t latched_us) noexcept;
-    /// Version 2: the session frame that leaves with that sample. False: none is due.
+    /// The session frame that leaves with that sample. False: none is due.
     [[nodiscard]] bool take_session(std::int64_t now_us, CanFrame& out) noexcept;
-    /// Version 2: flags of that sample, which name the permit whose cap the board obeys.
+    /// Flags of that sample, which name the permit whose cap the board obeys.
     [[nodiscard]] std::uint8_t ack_flags() const noexcept;
-    /// Version 2: the cap ordered for all axes, 1/250 of rapid.
+    /// The cap ordered for all axes, 1/250 of rapid.
     [[nodiscard]] std::uint8_t ordered_cap(std::int64_t now_us) noexcept;
     /// The same for each bit of the mask.
     [[nodiscard]] CapGroups ordered_caps(std::int64_t now_us) noexcept;
@@ -53,7 +51,7 @@ class PermitWatch {
     /// The axes are at rest; repeated calls are allowed.
     void rest(std::int64_t now_us) noexcept;
     /// A person acknowledged a stop during standstill, and armed: discards all earlier permits and
-    /// stops. Version 2: no effect while the guard still sends stop.
+    /// stops. No effect while the guard still sends stop.
     void acknowledge(std::int64_t now_us) noexcept;
     /// Processes a frame of the guard; call in order of arrival.
     void on_frame(const CanFrame& frame) noexcept;
@@ -80,18 +78,15 @@ class PermitWatch {
   private:
     static constexpr int kNothingOwed = -1;
 
-    void on_permit(const Permit& permit, std::int64_t now_us) noexcept;
     void power_up() noexcept;
     void arm(std::int64_t now_us) noexcept;
-    void hear(const CanFrame& frame) noexcept;
     void note_stop(std::int64_t now_us) noexcept;
     void note_permit(std::uint64_t now_us, std::uint8_t samples) noexcept;
 
     CanLayout layout_;
     ConfigurationHashes hashes_;
     CapPromise cap_;
-    PermitChecker checker_;         // of version 1
-    axg_board board_{};             // of version 2, and of hashes
+    axg_board board_{};
     int owed_part_ = kNothingOwed;  // of the guard's last hash
     std::uint32_t nonce_ = 0;
     std::uint16_t lap_ = 0;
@@ -99,7 +94,6 @@ class PermitWatch {
     std::int64_t last_stop_us_ = INT64_MIN;
     bool has_true_timer_;
     std::int64_t holds_us_;  // n T
-    std::array<std::int64_t, kSyncCounterMax + 1> latched_us_;
     std::int64_t valid_until_us_ = INT64_MIN, certified_us_ = INT64_MIN, stopped_us_ = kNever;
     std::uint64_t permits_ = 0, refused_ = 0;
     std::uint8_t speed_cap_ = 0, samples_ = 0;

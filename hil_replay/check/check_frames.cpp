@@ -64,7 +64,7 @@ void print_ids(const CheckReport& report) {
     if (can.hashes_in_id != 0) {
         fmt::print(report.words, ", hashes 0x{:03X}", can.hashes_in_id);
     }
-    if (has_session(can)) {
+    if (has_sample_counter(can)) {
         fmt::print(report.words, ", session 0x{:03X}, operator 0x{:03X}", can.session_in_id,
                    can.operator_in_id);
     }
@@ -76,7 +76,7 @@ void print_ids(const CheckReport& report) {
     if (can.hashes_out_id != 0) {
         fmt::print(report.words, ", hashes 0x{:03X}", can.hashes_out_id);
     }
-    if (has_session(can)) {
+    if (has_sample_counter(can)) {
         fmt::print(report.words, ", status 0x{:03X}, hints 0x{:03X}", can.operator_out_id,
                    can.hints_id);
     }

@@ -111,7 +111,7 @@ int inspect(const InspectArguments& arguments) {
     }
     std::string error = black_box_fault(arguments.trace);
     if (error.empty() && has_machine) {
-        error = take_trace_shape(arguments.trace, options, machine);
+        error = take_trace_shape(arguments.trace, options, machine).fault;
     }
     const std::unique_ptr<TraceReader> trace =
         error.empty() ? open_trace(arguments.trace, options, error) : nullptr;

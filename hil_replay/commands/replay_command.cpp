@@ -32,6 +32,7 @@
 #include "hil_replay/replay/replay_csv.hpp"
 #include "hil_replay/replay/replay_report.hpp"
 #include "hil_replay/replay/replay_run.hpp"
+#include "hil_replay/trace/added_session.hpp"
 #include "hil_replay/trace/candump_log.hpp"
 #include "hil_replay/trace/program_lines.hpp"
 #include "hil_replay/trace/trace_period.hpp"
@@ -256,6 +257,20 @@ ProgramLines lines_of(const ReplayArguments& arguments, Outputs& outputs) {
     return lines;
 }
 
+/// Takes period and format from the trace, and adds the session of a board that sends none.
+/// @return  null with a message in `fault`
+std::unique_ptr<TraceReader> open_shaped(const ReplayArguments& arguments, Machine& machine,
+                                         TracePeriod& period, std::string& fault) {
+    const TraceOptions options{.lenient = arguments.lenient, .device = arguments.device};
+    const TraceShape shape = take_trace_shape(arguments.trace, options, machine);
+    period = shape.period;
+    fault = shape.fault;
+    std::unique_ptr<TraceReader> trace =
+        fault.empty() ? open_trace(arguments.trace, options, fault) : nullptr;
+    return trace && shape.lacks_session ? with_session(std::move(trace), machine.can)
+                                        : std::move(trace);
+}
+
 int replay(const ReplayArguments& arguments, const ReplayObserver& observer) {
     LoadedMachine loaded;
     if (const int code = load(arguments.machine, loaded); code != kExitClean) {
@@ -267,11 +282,10 @@ int replay(const ReplayArguments& arguments, const ReplayObserver& observer) {
     if (arguments.is_realtime && arguments.deadline_us != 0) {  // the guard judges by it
         loaded.machine.deadline_us = static_cast<std::uint32_t>(arguments.deadline_us);
     }
-    const TraceOptions options{.lenient = arguments.lenient, .device = arguments.device};
     TracePeriod period;
-    std::string trace_error = take_trace_shape(arguments.trace, options, loaded.machine, &period);
+    std::string trace_error;
     const std::unique_ptr<TraceReader> trace =
-        trace_error.empty() ? open_trace(arguments.trace, options, trace_error) : nullptr;
+        open_shaped(arguments, loaded.machine, period, trace_error);
     if (!trace) {
         fmt::print(stderr, "{}\n", trace_error);
         return write_json(arguments.json, describe_unread(arguments.trace, trace_error))

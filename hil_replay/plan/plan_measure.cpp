@@ -9,8 +9,8 @@
 #include <span>
 #include <utility>
 
-#include "core/reach/motion_history.hpp"
 #include "core/certificate/pair_queries.hpp"
+#include "core/reach/motion_history.hpp"
 #include "firmware_if/setup/choose_engine.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
 #include "firmware_if/setup/travel_sample.hpp"
@@ -226,7 +226,7 @@ void measure_rest(const Machine& machine, const ModelScene& scene, const Engine&
 bool measure_trace(LoadedMachine loaded, const ModelScene& scene, const Engine& engine,
                    const ContainmentTest& containment_test, ModelMeasurement& out,
                    std::string& fault) {
-    if (fault = take_trace_shape(scene.trace, {}, loaded.machine); !fault.empty()) {
+    if (fault = take_trace_shape(scene.trace, {}, loaded.machine).fault; !fault.empty()) {
         return false;
     }
     std::vector<double> us;

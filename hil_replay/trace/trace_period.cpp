@@ -7,7 +7,7 @@
 #include <array>
 #include <optional>
 
-#include "firmware_if/protocol/permit2_frames.hpp"
+#include "firmware_if/protocol/permit_frames.hpp"
 #include "firmware_if/receiver/axis_receiver.hpp"
 
 namespace axg {
@@ -106,23 +106,22 @@ bool has_session_frames(TraceReader& trace, std::uint32_t session_id) {
     return false;
 }
 
-std::string take_trace_shape(const std::string& path, const TraceOptions& options, Machine& machine,
-                             TracePeriod* period) {
+TraceShape take_trace_shape(const std::string& path, const TraceOptions& options,
+                            Machine& machine) {
+    TraceShape shape;
     std::string error;
     std::unique_ptr<TraceReader> trace = open_trace(path, options, error);
     if (!trace) {
-        return error;
+        shape.fault = error;
+        return shape;
     }
     CanLayout& can = machine.can;
-    const TracePeriod judged = judge_trace_period(*trace, machine);
-    if (judged.verdict == PeriodVerdict::wrong) {
+    shape.period = judge_trace_period(*trace, machine);
+    if (shape.period.verdict == PeriodVerdict::wrong) {
         fmt::print(stderr,
                    "{}: a live guard refuses this period: sync_period, measured {:.3f} us, "
                    "declared {} us. Correct can.sample_us, or the board's period.\n",
-                   path, static_cast<double>(judged.measured_ns) / 1000, can.sample_us);
-    }
-    if (period != nullptr) {
-        *period = judged;
+                   path, static_cast<double>(shape.period.measured_ns) / 1000, can.sample_us);
     }
     trace = open_trace(path, options, error);
     const std::uint32_t period_us = trace ? trace_period_us(*trace, can.sync_id) : 0;
@@ -140,14 +139,16 @@ std::string take_trace_shape(const std::string& path, const TraceOptions& option
         can.format = CanFormat::fd;
     }
     trace = open_trace(path, options, error);
-    if (trace && has_session(can) && !has_session_frames(*trace, can.session_in_id)) {
+    shape.lacks_session =
+        trace && has_sample_counter(can) && !has_session_frames(*trace, can.session_in_id);
+    if (shape.lacks_session) {
         fmt::print(
             stderr,
-            "{}: no session frame 0x{:03X}, in the machine file permit: 2; using permit: 1\n", path,
-            can.session_in_id);
-        can.permit_version = 1;
+            "{}: no session frame 0x{:03X}, and a live guard permits nothing without; judged as "
+            "if the board sent it\n",
+            path, can.session_in_id);
     }
-    return {};
+    return shape;
 }
 
 }  // namespace axg

@@ -36,12 +36,15 @@ struct TracePeriod {
 /// forward, as trace_period_us does.
 [[nodiscard]] bool has_session_frames(TraceReader& trace, std::uint32_t session_id);
 
+struct TraceShape {
+    std::string fault{};  // empty, or why the trace cannot be read
+    TracePeriod period{};
+    bool lacks_session = false;  // the machine's boards send one, see with_session
+};
 /// Sets period and frame format in `machine` from the trace: simulate --sample-us and --fd may
-/// differ from the machine file. A trace without session frames is of a board with permit 1. Prints
-/// the changes on stderr, and whether a live guard would refuse the period.
-/// @param period  null: not needed
-/// @return  empty, or why the trace cannot be read
-[[nodiscard]] std::string take_trace_shape(const std::string& path, const TraceOptions& options,
-                                           Machine& machine, TracePeriod* period = nullptr);
+/// differ from the machine file. Prints the changes on stderr, whether a live guard would refuse
+/// the period, and whether the trace lacks the session.
+[[nodiscard]] TraceShape take_trace_shape(const std::string& path, const TraceOptions& options,
+                                          Machine& machine);
 
 }  // namespace axg

@@ -3,29 +3,14 @@
 
 #include <algorithm>
 
-#include "core/certificate/joint_box_proof.hpp"
 #include "firmware_if/guard/live_ids.hpp"
 #include "firmware_if/protocol/handshake.hpp"
 #include "firmware_if/protocol/seen_frames.hpp"
 
 namespace axg {
-namespace {
-
-/// A permit of version 1 as one of version 2; what it does not carry is 0.
-Permit2 permit_of_version_1(const Permit& permit, PermitSamples samples) noexcept {
-    const bool is_stop = permit.word == PermitWord::stop;
-    return {.word = permit.word,
-            .sync_counter = permit.sync_counter,
-            .live_counter = permit.live_counter,
-            .known_answer_signature = permit.known_answer_signature,
-            .cap = permit.speed_cap,
-            .samples = is_stop ? std::uint8_t{0} : samples.least};
-}
-
-}  // namespace
 
 BusView::BusView(const Machine& machine, const ConfigurationHashes& hashes) noexcept
-    : machine_(machine), hashes_(hashes), receiver_(machine), checker_(machine.can) {
+    : machine_(machine), hashes_(hashes), receiver_(machine) {
     latched_us_.fill(kNeverSeen);
 }
 
@@ -77,10 +62,10 @@ bool BusView::read_guard_frame(const CanFrame& frame) noexcept {
     if (frame.id == can.hashes_out_id && can.hashes_out_id != 0) {
         return read_hash(frame);
     }
-    if (has_session(can) && frame.id == can.hints_id) {
+    if (has_sample_counter(can) && frame.id == can.hints_id) {
         return note_hints(frame);
     }
-    if (has_session(can) && frame.id == can.operator_out_id) {
+    if (has_sample_counter(can) && frame.id == can.operator_out_id) {
         return read_phase(frame);
     }
     return true;  // a quick stop: its content is for the drive
@@ -88,30 +73,21 @@ bool BusView::read_guard_frame(const CanFrame& frame) noexcept {
 
 bool BusView::read_permit(const CanFrame& frame) noexcept {
     const CanLayout& can = machine_.can;
-    if (!has_session(can)) {
-        const PermitChecker::Result result = checker_.on_frame(frame);
-        if (result.is_permit) {
-            const bool is_right = result.permit.known_answer_signature == kKnownAnswerSignature;
-            state_.answer = is_right ? PermitAnswer::right : PermitAnswer::wrong;
-            note_permit(permit_of_version_1(result.permit, can.permit_samples), frame.time_us);
-        }
-        return result.fault == PermitFault::none;
-    }
     if (frame.id == can.permit_id) {
         const bool was_waiting = has_plain_;
         plain_ = frame;
         has_plain_ = true;
         return !was_waiting;  // two plain frames in a row: the first has no twin
     }
-    const std::optional<SeenPermit2> seen =
-        has_plain_ ? read_permit2(can, plain_, frame) : std::nullopt;
+    const std::optional<SeenPermit> seen =
+        has_plain_ ? axg::read_permit(can, plain_, frame) : std::nullopt;
     has_plain_ = false;
     if (!seen) {
         return false;
     }
     state_.answer = PermitAnswer::unknown;
     if (const auto session = receiver_.session_of(seen->permit.sync_counter)) {
-        Permit2 wanted = seen->permit;
+        Permit wanted = seen->permit;
         wanted.nonce = session->nonce;
         wanted.lap = session->lap;
         state_.answer =
@@ -121,7 +97,7 @@ bool BusView::read_permit(const CanFrame& frame) noexcept {
     return true;
 }
 
-void BusView::note_permit(const Permit2& permit, std::int64_t now_us) noexcept {
+void BusView::note_permit(const Permit& permit, std::int64_t now_us) noexcept {
     state_.permit = permit;
     state_.permit_us = now_us;
     if (permit.word == PermitWord::stop) {

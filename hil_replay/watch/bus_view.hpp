@@ -11,7 +11,7 @@
 #include "core/machine/machine.hpp"
 #include "firmware_if/protocol/guard_frames.hpp"
 #include "firmware_if/protocol/hints_frame.hpp"
-#include "firmware_if/protocol/permit2_frames.hpp"
+#include "firmware_if/protocol/permit_frames.hpp"
 #include "firmware_if/receiver/axis_receiver.hpp"
 
 namespace axg {
@@ -29,7 +29,7 @@ struct BusState {
     std::optional<AxisSnapshot> axes;    // of that sample
     std::optional<Hints> hints;          // of a pair of the machine, or of none
     std::int64_t hints_us = kNeverSeen;
-    std::optional<Permit2> permit;  // newest, of version 1 too; without nonce and lap
+    std::optional<Permit> permit;  // newest; without nonce and lap
     PermitAnswer answer = PermitAnswer::unknown;
     std::int64_t permit_us = kNeverSeen;
     std::int64_t permit_end_us = kNeverSeen;  // latest t_k + n T of all that answer right
@@ -59,7 +59,7 @@ class BusView {
     void on_event(const ReceiverEvent& event) noexcept;
     [[nodiscard]] bool read_guard_frame(const CanFrame& frame) noexcept;
     [[nodiscard]] bool read_permit(const CanFrame& frame) noexcept;
-    void note_permit(const Permit2& permit, std::int64_t now_us) noexcept;
+    void note_permit(const Permit& permit, std::int64_t now_us) noexcept;
     [[nodiscard]] bool note_hints(const CanFrame& frame) noexcept;
     [[nodiscard]] bool read_hash(const CanFrame& frame) noexcept;
     [[nodiscard]] bool read_emergency(const CanFrame& frame) noexcept;
@@ -69,8 +69,7 @@ class BusView {
     const Machine& machine_;
     ConfigurationHashes hashes_;
     AxisReceiver receiver_;
-    PermitChecker checker_;  // permits of version 1
-    CanFrame plain_;         // of version 2, waits for its twin
+    CanFrame plain_;  // waits for its twin
     bool has_plain_ = false;
     std::array<std::int64_t, kSyncCounterMax + 1> latched_us_;  // by SYNC counter
     BusState state_;

@@ -62,16 +62,15 @@ Json permit_json(const WatchInput& input) {
     if (!bus.permit) {
         return {};
     }
-    const Permit2& permit = *bus.permit;
+    const Permit& permit = *bus.permit;
     constexpr const char* kLevels[]{"clear", "warn", "slow", "stop"};
-    const bool has_level = has_session(input.machine.can);
     return {{"word", word_of(permit.word)},
             {"in_force", bus.permit_end_us != kNeverSeen && bus.permit_end_us > input.now_us},
             {"samples", permit.samples},
             {"valid_ms", permit.samples * 1e-3 * input.machine.can.sample_us},
             {"cap_percent", 100.0 * permit.cap / kPermitCapNone},
             {"mask", permit.mask},
-            {"level", has_level ? Json(kLevels[permit.level & 3U]) : Json()},
+            {"level", kLevels[permit.level & 3U]},
             {"answer", word_of(bus.answer)},
             {"age_ms", age_ms(bus.permit_us, input.now_us)}};
 }

@@ -92,7 +92,6 @@ inline CompiledMachine approach_machine() {
         out.meshes.bodies.push_back({one.name, {}});
     }
     out.meshes.bodies[kTableBody].triangles = together(mesh_of(kPlate), mesh_of(kWall));
-    machine.can.permit_version = 2;
     machine.can.axis_ids = {0x181, 0x281};
     machine.can.data_ids = {0x0181, 0x0281};
     return out;

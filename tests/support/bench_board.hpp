@@ -15,7 +15,7 @@
 #include "core/machine/machine.hpp"
 #include "firmware_if/board/axguard_board.h"
 #include "firmware_if/protocol/axis_frames.hpp"
-#include "firmware_if/protocol/permit2_frames.hpp"
+#include "firmware_if/protocol/permit_frames.hpp"
 #include "hil_replay/board/axis_motion.hpp"
 #include "tests/support/broken_rule.hpp"
 #include "tests/support/permit_bytes.hpp"
@@ -341,17 +341,17 @@ class BenchBoard {
         return nullptr;
     }
 
-    [[nodiscard]] std::array<CanFrame, 2> sealed(Permit2 permit) const {
+    [[nodiscard]] std::array<CanFrame, 2> sealed(Permit permit) const {
         const axg_board_record* const record = record_of(permit.sync_counter);
         permit.nonce = board_.nonce;
         permit.lap = record != nullptr ? record->sample.lap : std::uint16_t{0};
-        return encode_any_permit2(machine_.can, permit, now_us_);
+        return encode_any_permit(machine_.can, permit, now_us_);
     }
 
     /// Whether the pair would be right for another lap, nonce or answer.
     [[nodiscard]] bool is_right_for(const CanFrame& plain, int lap_off, std::uint32_t nonce,
                                     std::uint16_t answer_xor) const {
-        Permit2 permit = read(plain);
+        Permit permit = read(plain);
         const axg_board_record* const record = record_of(permit.sync_counter);
         if (record == nullptr) {
             return false;
@@ -359,11 +359,11 @@ class BenchBoard {
         permit.nonce = nonce;
         permit.lap = static_cast<std::uint16_t>(record->sample.lap + lap_off);
         permit.known_answer_signature ^= answer_xor;
-        return encode_any_permit2(machine_.can, permit, 0)[0].data == plain.data;
+        return encode_any_permit(machine_.can, permit, 0)[0].data == plain.data;
     }
 
     /// The same of the word and of what follows the answer.
-    bool bend_content(Permit2& permit, CanFrame& plain, CanFrame& inverted) {
+    bool bend_content(Permit& permit, CanFrame& plain, CanFrame& inverted) {
         bool is_bent = false;
         switch (options_.broken) {
             case Broken::takes_short_frames:
@@ -408,7 +408,7 @@ class BenchBoard {
 
     /// What the fault makes of a pair that the library would refuse.
     void bend(CanFrame& plain, CanFrame& inverted) {
-        Permit2 permit = read(plain);
+        Permit permit = read(plain);
         const bool is_right = is_right_for(plain, 0, board_.nonce, 0);
         const auto step = static_cast<std::uint8_t>(permit.live_counter - board_.live);
         bool is_bent = false;

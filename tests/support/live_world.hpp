@@ -52,7 +52,7 @@ class LiveWorld {
         hash.hash = options.hashes.of[hash.part];
         return true;
     };
-    // With permit 2, of each session frame on its way; false: it is lost.
+    // Of each session frame on its way; false: it is lost.
     std::function<bool(SessionSays&)> says_session = [](SessionSays&) { return true; };
     bool has_second_board = false;  // the same counters, other positions
     bool is_held = false;           // the process sleeps, the world goes on
@@ -61,6 +61,7 @@ class LiveWorld {
     void start() {
         queues = std::make_unique<LiveQueues>();
         pending_.clear();
+        session_due_ = true;
         guard = std::make_unique<GuardNode>(machine, options, wire, *queues, latch, wire.now_us);
     }
 
@@ -93,6 +94,17 @@ class LiveWorld {
         std::size_t count = 0;
         for (const CanFrame& frame : wire.sent) {
             count += frame.id == id && frame.time_us >= from_us ? 1U : 0U;
+        }
+        return count;
+    }
+
+    /// Permits that left since `from_us`, or their twins; without the word stop.
+    std::size_t count_permits(std::int64_t from_us = 0, bool are_twins = false) const {
+        const std::uint8_t stop = are_twins ? 0xA5 : 0x5A;
+        std::size_t count = 0;
+        for (const CanFrame& frame : wire.sent) {
+            const bool is_of_pair = frame.id == machine.can.permit_id + (are_twins ? 1 : 0);
+            count += is_of_pair && frame.data[0] != stop && frame.time_us >= from_us ? 1U : 0U;
         }
         return count;
     }
@@ -189,7 +201,7 @@ class LiveWorld {
         has_session_ = true;
     }
     void say_session(std::int64_t time_us) {
-        if (machine.can.permit_version != 2 || !session_due_) {
+        if (!has_sample_counter(machine.can) || !session_due_) {
             return;
         }
         session_due_ = false;

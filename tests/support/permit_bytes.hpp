@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "firmware_if/can/can_frame.hpp"
-#include "firmware_if/protocol/permit2_frames.hpp"
+#include "firmware_if/protocol/permit_frames.hpp"
 
 namespace axg::test {
 
@@ -20,7 +20,7 @@ namespace axg::test {
 }
 
 /// All but nonce and lap, which no byte tells.
-[[nodiscard]] inline Permit2 read(const CanFrame& plain) {
+[[nodiscard]] inline Permit read(const CanFrame& plain) {
     const auto& data = plain.data;
     return {.word = static_cast<PermitWord>(data[0]),
             .sync_counter = data[1],

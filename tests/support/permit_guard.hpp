@@ -10,7 +10,7 @@
 #include "core/machine/machine.hpp"
 #include "firmware_if/protocol/guard_frames.hpp"
 #include "firmware_if/protocol/handshake.hpp"
-#include "firmware_if/protocol/permit2_frames.hpp"
+#include "firmware_if/protocol/permit_frames.hpp"
 #include "firmware_if/receiver/axis_receiver.hpp"
 #include "hil_replay/board/closed_loop.hpp"
 
@@ -36,7 +36,7 @@ class PermitGuard {
             event.kind == ReceiverEvent::Kind::fault && event.severity == Severity::stop;
         if (event.kind == ReceiverEvent::Kind::snapshot) {
             say_hashes(event.time_us, sent);
-            has_session(layout_) ? permit2(event, sent) : permit(event, sent);
+            permit(event, sent);
         } else if (has_stopped) {
             sent.push_back(encode_stop(layout_, event.time_us));
         }
@@ -49,29 +49,18 @@ class PermitGuard {
         has_hashes_said_ = true;
     }
     void permit(const ReceiverEvent& event, std::vector<CanFrame>& sent) {
-        Permit made;
-        const bool is_valid = event.state == ReceiverState::valid;
-        made.word = is_valid ? PermitWord::run : PermitWord::stop;
-        made.sync_counter = event.sync_counter;
-        made.live_counter = ++live_counter_;
-        made.known_answer_signature = kKnownAnswerSignature;
-        for (const CanFrame& frame : encode_permit(layout_, made, event.time_us + response_us_)) {
-            sent.push_back(frame);
-        }
-    }
-    void permit2(const ReceiverEvent& event, std::vector<CanFrame>& sent) {
         const auto session = receiver_.session_of(event.sync_counter);
         if (!session || event.state != ReceiverState::valid) {
             return;
         }
-        const Permit2 made{.word = PermitWord::run,
-                           .sync_counter = event.sync_counter,
-                           .live_counter = ++live_counter_,
-                           .known_answer_signature = kKnownAnswerSignature,
-                           .samples = layout_.permit_samples.most,
-                           .nonce = session->nonce,
-                           .lap = session->lap};
-        for (const CanFrame& frame : encode_permit2(layout_, made, event.time_us + response_us_)) {
+        const Permit made{.word = PermitWord::run,
+                          .sync_counter = event.sync_counter,
+                          .live_counter = ++live_counter_,
+                          .known_answer_signature = kKnownAnswerSignature,
+                          .samples = layout_.permit_samples.most,
+                          .nonce = session->nonce,
+                          .lap = session->lap};
+        for (const CanFrame& frame : encode_permit(layout_, made, event.time_us + response_us_)) {
             sent.push_back(frame);
         }
     }

@@ -7,7 +7,7 @@
 
 #include "firmware_if/protocol/guard_frames.hpp"
 #include "firmware_if/protocol/hints_frame.hpp"
-#include "firmware_if/protocol/permit2_frames.hpp"
+#include "firmware_if/protocol/permit_frames.hpp"
 #include "tests/support/can_board.hpp"
 #include "tests/support/session_frame.hpp"
 
@@ -22,7 +22,6 @@ inline Machine watched_machine() {
     machine.bodies[1].name = "cutter";
     machine.bodies[2].name = "head";
     machine.pairs = {{.a = 1, .b = 0}, {.a = 2, .b = 0}};
-    machine.can.permit_version = 2;
     machine.can.hashes_in_id = 0x582;
     machine.can.hashes_out_id = 0x602;
     machine.can.permit_samples = {3, 12};
@@ -35,18 +34,18 @@ inline constexpr std::int64_t kWatchedAnswerUs = 400;  // from the latch to the 
 /// Of sample k, with the answer of this nonce.
 inline std::array<CanFrame, 2> permit_of_sample(const Machine& machine, std::uint64_t k,
                                                 std::uint32_t nonce = kWatchedNonce) {
-    return encode_permit2(machine.can,
-                          {.word = PermitWord::slow,
-                           .sync_counter = sync_counter_of(k),
-                           .live_counter = static_cast<std::uint8_t>(k + 1),
-                           .known_answer_signature = kKnownAnswerSignature,
-                           .cap = 125,
-                           .mask = 0xFF,
-                           .samples = 3,
-                           .level = 2,
-                           .nonce = nonce,
-                           .lap = static_cast<std::uint16_t>(k / kSyncCounterMax)},
-                          snapshot_at(machine, k).latched_us + kWatchedAnswerUs);
+    return encode_permit(machine.can,
+                         {.word = PermitWord::slow,
+                          .sync_counter = sync_counter_of(k),
+                          .live_counter = static_cast<std::uint8_t>(k + 1),
+                          .known_answer_signature = kKnownAnswerSignature,
+                          .cap = 125,
+                          .mask = 0xFF,
+                          .samples = 3,
+                          .level = 2,
+                          .nonce = nonce,
+                          .lap = static_cast<std::uint16_t>(k / kSyncCounterMax)},
+                         snapshot_at(machine, k).latched_us + kWatchedAnswerUs);
 }
 
 /// Samples 0 to count - 1; every tenth one with session, heartbeats and hints.

@@ -113,7 +113,6 @@ TEST(GuardNodeAllocates, NothingInHealthOrAfterFaults) {
 
 TEST(GuardNodeAllocates, NothingForAnOperatorWhetherItActsOrNot) {
     Machine machine = test::five_axis_machine(CanFormat::classical);
-    machine.can.permit_version = 2;
     const auto queues = std::make_unique<LiveQueues>();
     LatchCell latch{kLatchClear, ~kLatchClear};
     FixedWire wire;

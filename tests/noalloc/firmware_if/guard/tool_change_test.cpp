@@ -110,7 +110,6 @@ TEST_F(ToolChange, AllocatesNothingInEitherMode) {
 }
 
 TEST_F(ToolChange, AllocatesNothingWithAnEnforcedCap) {
-    loaded.machine.can.permit_version = 2;
     loaded.machine.can.permit_samples = {3, 12};
     const auto frames = frames_with({1, 2, 1, 2});
     for (const CapPromise promise : {CapPromise::all_axes, CapPromise::per_axis}) {

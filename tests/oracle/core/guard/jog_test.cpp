@@ -139,7 +139,6 @@ double drive_jog(Random& random, ContactScene& scene, const Place& place, const 
 void jog_once(Random& random, ContactScene& scene, Board board, JogTally& tally) {
     const Machine as_loaded = scene.machine();
     draw_rules(random, scene.machine(), board);
-    scene.machine().can.permit_version = static_cast<std::uint8_t>(1 + tally.jogs % 2);
     const Place place = draw_place(random, scene);
     set_margins(scene.machine(), place.margin_mm);
     AxisSnapshot snapshot;

@@ -108,11 +108,6 @@ class Watcher {
     double least_mm_ = HUGE_VAL;
 };
 
-/// Both versions of the permit, in turn; the other draws are the same for both.
-std::uint8_t version_of(std::uint64_t number) {
-    return static_cast<std::uint8_t>(1 + number % 2);
-}
-
 struct Drawn {
     Approach approach;
     Positions start;
@@ -129,7 +124,6 @@ Drawn draw_approach(Random& random, ContactScene& scene, Guard guard, Board boar
     if (keeps_cap(board)) {
         machine.guard.cap =
             board == Board::each_axis_with_cap ? CapPromise::all_axes : CapPromise::per_axis;
-        machine.can.permit_version = 2;
         machine.can.permit_samples = {3, static_cast<std::uint8_t>(8 + random() % 5)};
         machine.can.stale_after_us = 1000U * machine.can.permit_samples.most;
     } else if (board != Board::each_axis) {
@@ -189,7 +183,6 @@ DriveResult drive_watched(ContactScene& scene, Guard guard, const Drawn& drawn, 
 void approach_once(Random& random, ContactScene& scene, Guard guard, Board board, Tally& tally,
                    CapFault cap_fault = CapFault::none) {
     const Machine as_loaded = scene.machine();
-    scene.machine().can.permit_version = version_of(tally.approaches);
     Drawn drawn = draw_approach(random, scene, guard, board);
     BusFaults& faults = drawn.options.faults;
     faults.lost = random() % 3 == 0 ? between(random, 0, 0.05) : 0;
@@ -349,10 +342,8 @@ struct FaultTally {
 };
 
 /// One approach; it counts where the fault comes in motion.
-void fail_once(Random& random, ContactScene& scene, Fault fault, Board board,
-               std::uint8_t permit_version, FaultTally& tally) {
+void fail_once(Random& random, ContactScene& scene, Fault fault, Board board, FaultTally& tally) {
     const Machine as_loaded = scene.machine();
-    scene.machine().can.permit_version = permit_version;
     Drawn drawn = draw_approach(random, scene, Guard::whole, board);
     const std::int64_t fault_us =
         kBoardStartUs + drawn.moves_us + static_cast<std::int64_t>(between(random, 15e3, 120e3));
@@ -396,7 +387,7 @@ TEST(ClosedLoop, WhateverEndsTheGuardTheBoardBrakesInTimeAndStopsClear) {
         std::uint64_t tries = 0;
         for (; tally.approaches < count && tries < kTriesMax * count; ++tries) {
             fail_once(random, *scenes[tries % scenes.size()], static_cast<Fault>(i),
-                      static_cast<Board>(tries / scenes.size() % 3), version_of(tries), tally);
+                      static_cast<Board>(tries / scenes.size() % 3), tally);
         }
         std::printf("%-30s %10llu %8llu %8llu %10lld %8llu %8llu\n", kFaultNames[i],
                     static_cast<unsigned long long>(tally.approaches),

@@ -18,7 +18,8 @@
 #include "core/certificate/stop_certificate.hpp"
 #include "firmware_if/board/axguard_board.h"
 #include "firmware_if/protocol/e2e.hpp"
-#include "firmware_if/protocol/permit2_frames.hpp"
+#include "firmware_if/protocol/guard_frames.hpp"
+#include "firmware_if/protocol/permit_frames.hpp"
 #include "hil_replay/board/approach_driver.hpp"
 #include "tests/support/count.hpp"
 #include "tests/support/dice.hpp"
@@ -116,15 +117,15 @@ class WallGuard {
         return reach.high < kWall;
     }
     std::array<CanFrame, 2> permit(std::uint32_t number, std::uint32_t nonce) {
-        return encode_permit2(machine_.can,
-                              {.word = PermitWord::run,
-                               .sync_counter = static_cast<std::uint8_t>(number % kLap + 1),
-                               .live_counter = ++live_,
-                               .known_answer_signature = kKnownAnswerSignature,
-                               .samples = machine_.can.permit_samples.most,
-                               .nonce = nonce,
-                               .lap = static_cast<std::uint16_t>(number / kLap)},
-                              0);
+        return encode_permit(machine_.can,
+                             {.word = PermitWord::run,
+                              .sync_counter = static_cast<std::uint8_t>(number % kLap + 1),
+                              .live_counter = ++live_,
+                              .known_answer_signature = kKnownAnswerSignature,
+                              .samples = machine_.can.permit_samples.most,
+                              .nonce = nonce,
+                              .lap = static_cast<std::uint16_t>(number / kLap)},
+                             0);
     }
 
   private:

@@ -67,7 +67,6 @@ class Campaign {
         LatchCell latch{kLatchClear, ~kLatchClear};
         LiveWorld world(format_for(row), latch);
         FaultScene scene{.world = world, .random = random_};
-        world.machine.can.permit_version = static_cast<std::uint8_t>(1 + draw(2));
         if (row.prepare != nullptr) {
             row.prepare(scene);
         }
@@ -220,7 +219,6 @@ TEST(GuardNodeProperty, OneFrameLostInAThousandStopsNothingWithPermitsOfFourPeri
     for (const CanFormat format : {CanFormat::classical, CanFormat::fd}) {
         LatchCell latch{kLatchClear, ~kLatchClear};
         LiveWorld world(format, latch);
-        world.machine.can.permit_version = format == CanFormat::fd ? 2 : 1;
         world.machine.can.permit_samples = {4, 4};
         world.machine.can.stale_after_us = 4 * world.machine.can.sample_us;
         world.start();

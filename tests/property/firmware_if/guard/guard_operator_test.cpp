@@ -27,7 +27,6 @@ class OperatorNoise : public testing::Test {
     }
     static Machine machine_of() {
         Machine machine = test::five_axis_machine(CanFormat::classical);
-        machine.can.permit_version = 2;
         return machine;
     }
     template <class Value>

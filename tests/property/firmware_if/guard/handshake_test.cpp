@@ -79,14 +79,14 @@ TEST(HandshakeProperty, NoPermitBeforeAllHashesAreTheSameAndNoneAfterADifference
             board.send_unasked();
             world.run_periods(1);
             world.guard->arm(world.wire.now_us);
-            const std::size_t permits = world.count_sent(world.machine.can.permit_id);
+            const std::size_t permits = world.count_permits();
             ASSERT_TRUE(permits == 0 || board.has_said_all()) << "case " << i;
             if (board.was_wrong()) {
                 world.run_periods(2);  // what was on its way
                 const std::int64_t from_us = world.wire.now_us;
                 world.run_periods(20);
                 ASSERT_EQ(world.guard->guard().phase, GuardPhase::stopped) << "case " << i;
-                ASSERT_EQ(world.count_sent(world.machine.can.permit_id, from_us), 0U);
+                ASSERT_EQ(world.count_permits(from_us), 0U);
                 break;
             }
         }

@@ -155,7 +155,6 @@ Case random_case(Random& random) {
     c.board.reaction_us_max = static_cast<std::int64_t>(between(random, 0, 5000));
     c.bus.seed = random();
     c.fault_us = kBoardStartUs + static_cast<std::int64_t>(between(random, 20e3, 150e3));
-    c.machine.can.permit_version = static_cast<std::uint8_t>(1 + random() % 2);
     return c;
 }
 
@@ -327,15 +326,12 @@ TEST(MotionBoard, LossesStopItInTimeOrNotAtAll) {
 TEST(MotionBoard, DamagedPermitsNeverSetItInMotion) {
     Random random(printed_seed(20261131));
     Case c = random_case(random);
-    for (const auto version : {std::uint8_t{1}, std::uint8_t{2}}) {
-        c.machine.can.permit_version = version;
-        c.bus.faults = {.corrupted = 1};
-        EXPECT_EQ(run_case(c, 2000).state, BoardState::waiting);
-        c.bus.faults = {.permit_lost = 1};
-        EXPECT_EQ(run_case(c, 200).state, BoardState::waiting);
-        c.bus.faults = {};
-        EXPECT_EQ(run_case(c, 200).state, BoardState::moving);
-    }
+    c.bus.faults = {.corrupted = 1};
+    EXPECT_EQ(run_case(c, 2000).state, BoardState::waiting);
+    c.bus.faults = {.permit_lost = 1};
+    EXPECT_EQ(run_case(c, 200).state, BoardState::waiting);
+    c.bus.faults = {};
+    EXPECT_EQ(run_case(c, 200).state, BoardState::moving);
 }
 
 TEST(MotionBoard, TheSameSeedGivesTheSameRest) {

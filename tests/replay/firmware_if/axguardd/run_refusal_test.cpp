@@ -89,7 +89,7 @@ TEST(AxguarddRun, RefusesPermitsThatNothingObeys) {
                       .find("guard.obeyed_by: no line can obey these permits: not built."),
                   std::string::npos);
         EXPECT_NE(refused_by(command, test::with(paper, "permit: 2", "permit: 1"), kExitInput)
-                      .find("machine.yaml: can.permit: 1 has no session"),
+                      .find("can.permit: invalid value (found 1, expected 2"),
                   std::string::npos);
     }
 }
@@ -118,15 +118,15 @@ TEST(AxguarddRun, AStatusSocketNeedsANameOfItsOwn) {
 // As `run` does, so that nobody learns it at the machine.
 TEST(AxguardCheck, ListsWhatALiveGuardRefuses) {
     const std::string paper = test::content_of(test::kPaperMachine);
-    std::string reports = test::with(paper, "permit: 2", "permit: 1");
-    reports.insert(reports.find("\nguard:\n") + 8, "  limits_broken: report\n");
+    std::string reports = paper;
+    reports.insert(reports.find("\nguard:\n") + 8, "  obeyed_by: line\n  limits_broken: report\n");
     test::Workshop shop;
     (void)shop.write("bad.yaml", reports);
     const std::string root = std::filesystem::path(test::kPaperMachine).parent_path().string();
     ASSERT_EQ(shop.run("check bad.yaml --engine cpu --json=bad.json --mesh-root " + root),
               kExitClean)
         << shop.err;
-    for (const char* const why : {"can.permit: 1 ", "guard.limits_broken: report "}) {
+    for (const char* const why : {"guard.obeyed_by: no line ", "guard.limits_broken: report "}) {
         EXPECT_NE(shop.out.find("  axguardd run rejects this machine: " + std::string(why)),
                   std::string::npos)
             << shop.out;

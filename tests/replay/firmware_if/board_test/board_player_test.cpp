@@ -29,7 +29,6 @@ constexpr std::int64_t kEndUs = 600'000'000;
 
 Machine bench_machine(std::uint8_t permit_samples = 8) {
     Machine machine = motion_test_machine();
-    machine.can.permit_version = 2;
     machine.can.permit_samples = {permit_samples, permit_samples};
     machine.can.hashes_in_id = 0x582;
     machine.can.hashes_out_id = 0x602;

@@ -9,6 +9,7 @@
 #include <cstdio>
 
 #include "core/guard/monitor.hpp"
+#include "firmware_if/protocol/permit_frames.hpp"
 #include "hil_replay/board/approach_driver.hpp"
 #include "tests/support/motion_machine.hpp"
 #include "tests/support/permit_guard.hpp"
@@ -20,11 +21,23 @@ constexpr int kCycles = 1'000'000, kPasses = 5;
 
 /// Answers the last axis frame of each sample with a permit: no receiver, no query.
 LoopGuard echo_guard(const CanLayout& layout) {
-    return {[&layout, sync = std::uint8_t{0}, live = std::uint8_t{0}](
+    return {[&layout, sync = std::uint8_t{0}, live = std::uint8_t{0}, session = Session{}](
                 const CanFrame& frame, std::vector<CanFrame>& sent) mutable {
-                sync = frame.id == layout.sync_id ? frame.data[0] : sync;
-                if (frame.id == layout.axis_ids.back() && sync != 0) {
-                    Permit permit{PermitWord::run, sync, ++live, kKnownAnswerSignature, 0, 255, 0};
+                if (frame.id == layout.sync_id) {
+                    session.lap = static_cast<std::uint16_t>(session.lap + (frame.data[0] < sync));
+                    sync = frame.data[0];
+                }
+                if (frame.id == layout.session_in_id) {
+                    (void)decode_session(frame.id, frame, session);
+                }
+                if (frame.id == layout.axis_ids.back() && session.nonce != 0) {
+                    const Permit permit{.word = PermitWord::run,
+                                        .sync_counter = sync,
+                                        .live_counter = ++live,
+                                        .known_answer_signature = kKnownAnswerSignature,
+                                        .samples = layout.permit_samples.most,
+                                        .nonce = session.nonce,
+                                        .lap = session.lap};
                     const auto pair = encode_permit(layout, permit, frame.time_us + 600);
                     sent.insert(sent.end(), pair.begin(), pair.end());
                 }

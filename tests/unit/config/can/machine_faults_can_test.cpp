@@ -87,34 +87,47 @@ TEST(MachineFaultsCan, HashesHaveIdentifiersOfTheirOwnAndNoneWithoutThem) {
     EXPECT_NE(faults_of(with_can(kSmallMachine, "  hashes: on\n")), "");
 }
 
-// The ids of permit version 2 count where it is sent, and nowhere else.
-TEST(MachineFaultsCan, TheIdsOfPermitTwoAreIdentifiersOfTheirOwn) {
-    const std::string second = with(kSmallMachine, "stale_after_us: 3000", "permit: 2");
-    EXPECT_EQ(faults_of(second), "");
+TEST(MachineFaultsCan, TheIdsOfASessionAreIdentifiersOfTheirOwn) {
     for (const auto& [id, name] : {std::pair{"0x583", "session_in"},
                                    {"0x682", "hints"},
                                    {"0x584", "operator_in"},
                                    {"0x604", "operator_out"}}) {
         const std::string taken = std::string("stop: ") + id;
-        EXPECT_EQ(faults_of(with(second, "stop: 0x001", taken)),
+        EXPECT_EQ(faults_of(with(kSmallMachine, "stop: 0x001", taken)),
                   std::string("m:31: can.ids: invalid value (found ") + id + " for both stop and " +
                       name +
                       ", expected a different id for each (the permit uses its own and the next "
                       "one)).\n");
-        EXPECT_EQ(faults_of(with(with(second, "permit: 2", "permit: 1"), "stop: 0x001", taken)),
+        EXPECT_EQ(faults_of(with(kSmallMachine, "stop: 0x001", taken + ", " + name + ": 0x6A0")),
                   "");
-        EXPECT_NE(faults_of(with(kSmallMachine, "stop: 0x001", taken)), "") << "2 is the default";
-        EXPECT_EQ(faults_of(with(second, "stop: 0x001", taken + ", " + name + ": 0x6A0")), "");
     }
-    EXPECT_EQ(faults_of(with(second, "permit: 2", "permit: 3")),
-              "m:33: can.permit: invalid value (found \"3\", expected an integer from 1 to 2).\n");
+    EXPECT_EQ(faults_of(with(with_signals(), "  format: signals",
+                             "  format: signals\n  ids: {stop: 0x583}")),
+              "")
+        << "a board without a sample counter sends none";
+}
+
+TEST(MachineFaultsCan, APermitHasVersionTwo) {
+    const auto stated = [](const char* permit) {
+        return with(kSmallMachine, "stale_after_us: 3000", permit);
+    };
+    EXPECT_EQ(faults_of(stated("permit: 2")), "");
+    for (const std::string other : {"1", "3"}) {
+        EXPECT_EQ(
+            faults_of(stated(("permit: " + other).c_str())),
+            "m:33: can.permit: invalid value (found " + other +
+                ", expected 2, or no such key). A permit of version 1 has no session, so that "
+                "a board may accept an old one, from before a reset or delayed for a lap of "
+                "SYNC.\n");
+    }
 }
 
 TEST(MachineFaultsCan, PermitTwoNeedsASyncCounter) {
     EXPECT_EQ(
         faults_of(with(with_signals(), "  format: signals", "  format: signals\n  permit: 2")),
         "m:30: can.permit: invalid value (found 2 with samples that have no SYNC counter from 1 to "
-        "240, expected 1, or format: classical or fd, or cia402 with sync_counter: 240).\n");
+        "240, expected no such key, or format: classical or fd, or cia402 with sync_counter: "
+        "240).\n");
 }
 
 /// The small machine with drives that are told to stop.
@@ -226,7 +239,9 @@ TEST(MachineFaultsCan, ThePermitsSamplesAreOneNumberOrTwo) {
     EXPECT_EQ(can_of("permit_samples: 5\n").permit_samples, (PermitSamples{5, 5}));
     EXPECT_EQ(can_of("permit_samples: 2\n").stale_after_us, 3000U);
     EXPECT_EQ(can_of("permit_samples: [2, 8]\n").permit_samples, (PermitSamples{2, 8}));
-    EXPECT_EQ(can_of("permit: 1\n  hashes: none\n").permit_samples, (PermitSamples{3, 3}));
+    Machine signals;
+    EXPECT_TRUE(parse_machine(with_signals(), "m", signals).empty());
+    EXPECT_EQ(signals.can.permit_samples, (PermitSamples{3, 3}));
     const std::string wanted =
         ", expected an integer from 2 to 12, or two of them: [least, most]).\n";
     const std::string one = "m:33: can.permit_samples: invalid value (found ";
@@ -237,9 +252,12 @@ TEST(MachineFaultsCan, ThePermitsSamplesAreOneNumberOrTwo) {
             << bad;
     }
     EXPECT_EQ(faults_of(stated("permit_samples: [5, 4]\n")).substr(0, one.size()), one);
-    EXPECT_EQ(faults_of(stated("permit: 1\n  permit_samples: [3, 4]\n  hashes: none\n"))
-                  .substr(0, one.size()),
-              "m:34: can.permit_samples: invalid value (found ");
+    EXPECT_EQ(
+        faults_of(with(with_signals(), "  format: signals",
+                       "  format: signals\n  permit_samples: [3, 4]")),
+        "m:30: can.permit_samples: invalid value (found [3, 4] with samples that have no SYNC "
+        "counter from 1 to 240, expected one integer). The guard sends no permits for these "
+        "samples.\n");
     EXPECT_NE(effective_text(machine_of("permit_samples: [3, 11]\n")),
               effective_text(machine_of("permit_samples: [3, 10]\n")));
 }

@@ -371,11 +371,6 @@ TEST(MachineGuard, AnAxisMayHaveNoLimitOfJerk) {
 TEST(MachineGuard, ACapIsRefusedWhereNothingWouldKeepIt) {
     const std::string capped =
         with(kSmallMachine, "speed_cap: false", "speed_cap: false, cap: all_axes");
-    EXPECT_EQ(
-        faults_of(
-            with(capped, "  stale_after_us: 3000\n", "  stale_after_us: 3000\n  permit: 1\n")),
-        "m:37: guard.cap: invalid value (found all_axes with can.permit: 1, expected none, or "
-        "permit: 2). No proof may use the cap of a permit of version 1.\n");
     EXPECT_EQ(faults_of(with(capped, "  stale_after_us: 3000\n",
                              "  stale_after_us: 12000\n  permit_samples: 10\n")),
               "m:37: guard.cap: invalid value (found all_axes with one number as "

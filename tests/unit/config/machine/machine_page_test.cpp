@@ -96,7 +96,6 @@ TEST(MachinePage, TheCanSectionShownIsTheDefault) {
     EXPECT_EQ(shown.can.heartbeat_out_id, silent.can.heartbeat_out_id);
     EXPECT_EQ(shown.can.sample_us, silent.can.sample_us);
     EXPECT_EQ(shown.can.stale_after_us, silent.can.stale_after_us);
-    EXPECT_EQ(shown.can.permit_version, silent.can.permit_version);
     EXPECT_EQ(shown.can.hashes_in_id, silent.can.hashes_in_id);
     EXPECT_EQ(shown.can.hashes_out_id, silent.can.hashes_out_id);
     EXPECT_EQ(shown.can.permit_samples, silent.can.permit_samples);

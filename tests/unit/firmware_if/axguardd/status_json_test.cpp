@@ -21,7 +21,6 @@ constexpr std::int64_t kNowUs = 100'000'000;
 class StatusLineTest : public testing::Test {
   protected:
     StatusLineTest() {
-        machine.can.permit_version = 2;
         machine.pairs = {{.a = 5, .b = 3}};
         view.phase = GuardPhase::armed;
         view.time_us = kNowUs - 3000;
@@ -92,7 +91,7 @@ TEST_F(StatusLineTest, SaysWhatTheGuardIsAndWhere) {
     view.compares_hashes = false;
     EXPECT_EQ(json()["hashes"], "none");
     EXPECT_NE(words().text.find("hashes are not compared"), std::string::npos);
-    machine.can.permit_version = 1;
+    machine.can.format = CanFormat::signals;  // no counter, so no session
     EXPECT_TRUE(json()["session"].is_null());
 }
 

@@ -38,7 +38,6 @@ class GuardCap : public testing::Test {
     }
     static Machine capped_machine() {
         Machine machine = test::five_axis_machine(CanFormat::classical);
-        machine.can.permit_version = 2;
         machine.can.permit_samples = {3, 12};
         machine.guard.cap = CapPromise::all_axes;
         return machine;

@@ -20,11 +20,6 @@ using test::status_in;
 
 class GuardOperator : public testing::Test {
   protected:
-    static Machine machine_of(std::uint8_t version) {
-        Machine machine = test::five_axis_machine(CanFormat::classical);
-        machine.can.permit_version = version;
-        return machine;
-    }
     GuardOperator() { begin(); }
     /// As deployed: the board stands, and a person arms.
     void begin() {
@@ -111,7 +106,7 @@ class GuardOperator : public testing::Test {
     }
 
     LatchCell latch{kLatchClear, ~kLatchClear};
-    test::LiveWorld world{machine_of(2), latch};
+    test::LiveWorld world{test::five_axis_machine(CanFormat::classical), latch};
     test::OperatorPanel panel;
     std::vector<CanFrame> said;
     std::string logged;  // the last of those lines, as the log has it
@@ -411,18 +406,6 @@ TEST_F(GuardOperator, ExtendedAndRemoteFramesAreNoMessages) {
     EXPECT_EQ(counters().operator_acts + counters().operator_refused, 0U);
 }
 
-TEST_F(GuardOperator, WithPermitVersion1NothingIsReadOrSent) {
-    world.machine.can.permit_version = 1;
-    begin();
-    world.wire.sent.clear();
-    run_to_ready();
-    test::OperatorPanel other;
-    arrive(other.request(AXG_OPERATOR_RESET, now_us()));
-    arrive(other.request(AXG_OPERATOR_ARM, now_us()));
-    EXPECT_TRUE(statuses().empty());
-    EXPECT_EQ(counters().operator_refused + counters().operator_ignored, 0U);
-}
-
 TEST_F(GuardOperator, ItListensForMessagesAndItsOwnStatus) {
     std::array<std::uint32_t, kLiveIdsMax> ids{};
     std::uint32_t count = live_ids(world.machine, ids);
@@ -431,7 +414,7 @@ TEST_F(GuardOperator, ItListensForMessagesAndItsOwnStatus) {
     EXPECT_TRUE(heard.contains(0x604));
     EXPECT_TRUE(is_guard_id(world.machine.can, 0x604));
     EXPECT_FALSE(is_guard_id(world.machine.can, 0x584));
-    world.machine.can.permit_version = 1;
+    world.machine.can.format = CanFormat::signals;  // no sample counter
     count = live_ids(world.machine, ids);
     heard = {ids.begin(), ids.begin() + count};
     EXPECT_FALSE(heard.contains(0x584));

@@ -18,32 +18,17 @@ TEST(LiveRefusal, ListsEveryReason) {
     EXPECT_EQ(live_refusals(drives), wanted);
     Machine counted = drives;
     counted.can.sync_counter_max = 240;
-    counted.can.permit_version = 2;
     EXPECT_EQ(live_refusals(counted), std::vector<std::string>{standstill_refusal(drives)});
 }
 
-Machine second(CanFormat format) {
-    Machine machine = test::five_axis_machine(format);
-    machine.can.permit_version = 2;
-    return machine;
-}
-
 TEST(LiveRefusal, FramesOfOurOwnAreRefusedNothing) {
-    EXPECT_TRUE(live_refusals(second(CanFormat::classical)).empty());
-    EXPECT_TRUE(live_refusals(second(CanFormat::fd)).empty());
-}
-
-TEST(LiveRefusal, PermitOneIsForTraces) {
-    Machine machine = second(CanFormat::fd);
-    machine.can.permit_version = 1;
-    const std::vector<std::string> refusals = live_refusals(machine);
-    ASSERT_EQ(refusals.size(), 1U);
-    EXPECT_EQ(refusals[0].rfind("can.permit: 1 has no session", 0), 0U) << refusals[0];
+    EXPECT_TRUE(live_refusals(test::five_axis_machine(CanFormat::classical)).empty());
+    EXPECT_TRUE(live_refusals(test::five_axis_machine(CanFormat::fd)).empty());
 }
 
 // A guard may run, but a person has to know.
 TEST(LiveRefusal, HashesThatNobodyComparesAreAWarning) {
-    Machine machine = second(CanFormat::classical);
+    Machine machine = test::five_axis_machine(CanFormat::classical);
     machine.can.hashes_in_id = 0x582;
     machine.can.hashes_out_id = 0x602;
     EXPECT_TRUE(live_warnings(machine).empty());
@@ -54,7 +39,7 @@ TEST(LiveRefusal, HashesThatNobodyComparesAreAWarning) {
 }
 
 TEST(LiveRefusal, BrokenLimitsMustStop) {
-    Machine machine = second(CanFormat::classical);
+    Machine machine = test::five_axis_machine(CanFormat::classical);
     machine.guard.reports_limits = true;
     const std::vector<std::string> refusals = live_refusals(machine);
     ASSERT_EQ(refusals.size(), 1U);

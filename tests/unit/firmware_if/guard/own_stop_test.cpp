@@ -57,7 +57,6 @@ class OwnStop : public testing::Test {
 
     static Machine machine() {
         Machine machine = five_axis_machine(CanFormat::classical);
-        machine.can.permit_version = 2;
         return machine;
     }
     LatchCell latch;

@@ -66,8 +66,6 @@ constexpr ConfigurationHashes kHashes{{0xD6E7F809, 0x1A2B3C4D, 0x5E6F7081, 0x92A
 
 /// What a machine file gets where nobody states it.
 void set_defaults(CanLayout& can) {
-    const bool is_ours = can.format == CanFormat::classical || can.format == CanFormat::fd;
-    can.permit_version = is_ours ? 2 : 1;
     can.hashes_in_id = 0x582;
     can.hashes_out_id = 0x602;
     can.quick_stop_ids = {kFirstDrive, kSecondDrive};

@@ -51,7 +51,6 @@ class Line final : public PulseLine {
 
 Machine machine_with_drives() {
     Machine machine = test::five_axis_machine(CanFormat::classical);
-    machine.can.permit_version = 2;
     machine.can.quick_stop_ids = {0x303, 0x304};
     return machine;
 }

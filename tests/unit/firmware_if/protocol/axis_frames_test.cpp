@@ -9,7 +9,7 @@
 
 #include "core/base/sincos.hpp"
 #include "firmware_if/protocol/e2e.hpp"
-#include "firmware_if/protocol/permit2_frames.hpp"
+#include "firmware_if/protocol/permit_frames.hpp"
 #include "tests/support/frame_bytes.hpp"
 
 namespace axg {
@@ -48,7 +48,7 @@ using Bytes = std::vector<std::uint8_t>;
 
 TEST(AxisEncoder, ClassicalFramesAreTheDocumentedBytes) {
     const Machine machine = five_axes(CanFormat::classical);
-    AxisEncoder encoder(machine);
+    AxisEncoder encoder(machine, {.says_session = false});
     std::array<CanFrame, kFramesPerSnapshotMax> out;
     const EncodeResult result = encoder.encode(sample_snapshot(), out);
     ASSERT_EQ(result.status, EncodeStatus::ok);
@@ -98,7 +98,7 @@ TEST(AxisEncoder, FdFrameIsTheDocumentedBytes) {
 
 TEST(AxisEncoder, TimesOnTheBusAreThoseOfTheWire) {
     const Machine machine = five_axes(CanFormat::classical);
-    AxisEncoder encoder(machine);
+    AxisEncoder encoder(machine, {.says_session = false});
     std::array<CanFrame, kFramesPerSnapshotMax> out;
     AxisSnapshot snapshot = sample_snapshot();
     snapshot.latched_us = 1000;
@@ -125,7 +125,7 @@ TEST(AxisEncoder, ASampleTooShortForAnyWireStillEndsBeforeTheNext) {
 
 TEST(AxisEncoder, HeartbeatComesEveryTenMilliseconds) {
     const Machine machine = five_axes(CanFormat::fd);
-    AxisEncoder encoder(machine);
+    AxisEncoder encoder(machine, {.says_session = false});
     std::array<CanFrame, kFramesPerSnapshotMax> out;
     AxisSnapshot snapshot = sample_snapshot();
     int heartbeats = 0;
@@ -214,7 +214,6 @@ TEST(DecodeAxisFrame, RefusesEveryWrongFormat) {
 TEST(AxisEncoder, SaysTheSessionOfABoardOfPermitTwo) {
     for (const CanFormat format : {CanFormat::classical, CanFormat::fd}) {
         Machine machine = five_axes(format);
-        machine.can.permit_version = 2;
         AxisEncoder encoder(machine);
         std::vector<std::uint64_t> said;
         for (std::uint64_t k = 0; k < 600; ++k) {
@@ -260,7 +259,6 @@ TEST(CheckLayout, PermitTwoHasIdsOfItsOwn) {
         machine.can.axis_ids[0] = id;
         EXPECT_EQ(check_layout(machine), LayoutStatus::ok);
         EXPECT_EQ(make_frame_set(machine).session_id, 0U);
-        machine.can.permit_version = 2;
         EXPECT_EQ(check_layout(machine), LayoutStatus::id_used_twice);
         machine.can.axis_ids[0] = 0x181;
         EXPECT_EQ(check_layout(machine), LayoutStatus::ok);

@@ -43,7 +43,7 @@ class HandshakeWorld : public testing::Test {
         world.start();
     }
     const Guard& guard() const { return world.guard->guard(); }
-    std::size_t permits() const { return world.count_sent(world.machine.can.permit_id); }
+    std::size_t permits() const { return world.count_permits(); }
     std::vector<LiveNote> notes() {
         std::vector<LiveNote> out;
         LiveNote note;
@@ -125,7 +125,7 @@ TEST_F(HandshakeWorld, ABoardThatIsSetRightIsPermittedAfterAReset) {
     world.run_periods(world.kStandPeriods);
     world.guard->reset(world.wire.now_us);
     world.stands_still = false;
-    world.run_periods(100);
+    world.run_periods(140);  // until the board's next session frame
     EXPECT_EQ(guard().phase, GuardPhase::ready) << to_text(guard().cause);
 }
 

@@ -16,7 +16,7 @@
 #include "firmware_if/protocol/guard_frames.hpp"
 #include "firmware_if/protocol/handshake.hpp"
 #include "firmware_if/protocol/hints_frame.hpp"
-#include "firmware_if/protocol/permit2_frames.hpp"
+#include "firmware_if/protocol/permit_frames.hpp"
 #include "tests/support/page_text.hpp"
 
 namespace axg {
@@ -184,18 +184,18 @@ std::optional<CanFrame> encode_words(const CanLayout& can, Words& words, CanFram
         const auto word = named<PermitWord>(words, "word");
         kind += std::string(" ") + name_of(word);
         const std::string level = words.text("level");
-        const Permit2 permit{.word = word,
-                             .sync_counter = words.integer<std::uint8_t>("echo"),
-                             .live_counter = words.integer<std::uint8_t>("live counter"),
-                             .known_answer_signature = kKnownAnswerSignature,
-                             .cap = words.integer<std::uint8_t>("cap"),
-                             .mask = words.integer<std::uint8_t>("mask"),
-                             .samples = words.integer<std::uint8_t>("n"),
-                             .level = static_cast<std::uint8_t>(std::stoul(level)),
-                             .nonce = words.integer<std::uint32_t>("nonce"),
-                             .lap = words.integer<std::uint16_t>("lap")};
+        const Permit permit{.word = word,
+                            .sync_counter = words.integer<std::uint8_t>("echo"),
+                            .live_counter = words.integer<std::uint8_t>("live counter"),
+                            .known_answer_signature = kKnownAnswerSignature,
+                            .cap = words.integer<std::uint8_t>("cap"),
+                            .mask = words.integer<std::uint8_t>("mask"),
+                            .samples = words.integer<std::uint8_t>("n"),
+                            .level = static_cast<std::uint8_t>(std::stoul(level)),
+                            .nonce = words.integer<std::uint32_t>("nonce"),
+                            .lap = words.integer<std::uint16_t>("lap")};
         EXPECT_EQ(level.substr(2), to_text(static_cast<ClearanceLevel>(3 - permit.level)));
-        const auto frames = encode_permit2(can, permit, 0);
+        const auto frames = encode_permit(can, permit, 0);
         inverse = frames[1];
         return frames[0];
     }
@@ -214,20 +214,6 @@ std::optional<CanFrame> encode_words(const CanLayout& can, Words& words, CanFram
                              .distance_10um = static_cast<std::uint16_t>(
                                  std::lround(words.number("distance") * 100))},
                             0);
-    }
-    if (words.name == "permit 1") {
-        const auto word = named<PermitWord>(words, "word");
-        kind += std::string(" ") + name_of(word);
-        const Permit permit{.word = word,
-                            .sync_counter = words.integer<std::uint8_t>("echo"),
-                            .live_counter = words.integer<std::uint8_t>("live counter"),
-                            .known_answer_signature = words.integer<std::uint16_t>("signature"),
-                            .speed_cap = words.integer<std::uint8_t>("speed cap"),
-                            .pair = words.integer<std::uint8_t>("pair"),
-                            .clearance_dmm = permit_clearance(words.number("distance"))};
-        const auto frames = encode_permit(can, permit, 0);
-        inverse = frames[1];
-        return frames[0];
     }
     if (words.name == "inverse") {
         return inverse;
@@ -285,9 +271,6 @@ std::set<std::string> every_kind() {
                                 "board heartbeat 127 pre-operational"};
     for (const auto& [name, word] : names_of<PermitWord>()) {
         kinds.insert("permit " + name);
-        if (word != PermitWord::stop) {  // version 1 never sent it
-            kinds.insert("permit 1 " + name);
-        }
     }
     for (const auto& [name, code] : names_of<EmergencyCode>()) {
         kinds.insert("emergency " + name);
@@ -368,13 +351,12 @@ TEST(ProtocolPage, NoEncoderOfTheRoomIsForgotten) {
     }
     const std::set<std::string> known{"AxisEncoder",
                                       "encode",
-                                      "encode_any_permit2",
+                                      "encode_any_permit",
                                       "encode_emergency",
                                       "encode_guard_heartbeat",
                                       "encode_hash",
                                       "encode_heartbeat",
                                       "encode_permit",
-                                      "encode_permit2",
                                       "encode_hints",
                                       "encode_operator_status",
                                       "encode_quick_stop",

@@ -8,18 +8,18 @@ namespace axg {
 namespace {
 
 TEST(SeenFrames, APairIsReadBackWithTheAnswerOfItsSession) {
-    const Permit2 permit{.word = PermitWord::slow,
-                         .sync_counter = 17,
-                         .live_counter = 42,
-                         .known_answer_signature = 0xC5A3,
-                         .cap = 60,
-                         .mask = 6,
-                         .samples = 10,
-                         .level = 2,
-                         .nonce = 0xC0FFEE,
-                         .lap = 3};
-    const auto pair = encode_permit2({}, permit, 7);
-    const auto seen = read_permit2({}, pair[0], pair[1]);
+    const Permit permit{.word = PermitWord::slow,
+                        .sync_counter = 17,
+                        .live_counter = 42,
+                        .known_answer_signature = 0xC5A3,
+                        .cap = 60,
+                        .mask = 6,
+                        .samples = 10,
+                        .level = 2,
+                        .nonce = 0xC0FFEE,
+                        .lap = 3};
+    const auto pair = encode_permit({}, permit, 7);
+    const auto seen = read_permit({}, pair[0], pair[1]);
     ASSERT_TRUE(seen);
     EXPECT_EQ(seen->permit.word, PermitWord::slow);
     EXPECT_EQ(seen->permit.sync_counter, 17);
@@ -28,7 +28,7 @@ TEST(SeenFrames, APairIsReadBackWithTheAnswerOfItsSession) {
     EXPECT_EQ(seen->permit.mask, 6);
     EXPECT_EQ(seen->permit.samples, 10);
     EXPECT_EQ(seen->permit.level, 2);
-    Permit2 answered = seen->permit;
+    Permit answered = seen->permit;
     answered.nonce = 0xC0FFEE;
     answered.lap = 3;
     EXPECT_EQ(answer_of({}, answered), seen->answer);
@@ -37,21 +37,21 @@ TEST(SeenFrames, APairIsReadBackWithTheAnswerOfItsSession) {
 }
 
 TEST(SeenFrames, APairWithAnyBitChangedInOneFrameIsNone) {
-    const auto pair = encode_permit2(
+    const auto pair = encode_permit(
         {}, {.word = PermitWord::run, .sync_counter = 1, .live_counter = 1, .samples = 3}, 7);
-    ASSERT_TRUE(read_permit2({}, pair[0], pair[1]));
+    ASSERT_TRUE(read_permit({}, pair[0], pair[1]));
     for (unsigned bit = 0; bit < 64; ++bit) {
         for (const unsigned frame : {0U, 1U}) {
             auto damaged = pair;
             damaged[frame].data[bit / 8] =
                 static_cast<std::uint8_t>(damaged[frame].data[bit / 8] ^ (1U << bit % 8));
-            EXPECT_FALSE(read_permit2({}, damaged[0], damaged[1])) << frame << ' ' << bit;
+            EXPECT_FALSE(read_permit({}, damaged[0], damaged[1])) << frame << ' ' << bit;
         }
     }
     auto shapes = pair;
     shapes[1].length_bytes = 7;
-    EXPECT_FALSE(read_permit2({}, shapes[0], shapes[1]));
-    EXPECT_FALSE(read_permit2({}, pair[1], pair[0]));
+    EXPECT_FALSE(read_permit({}, shapes[0], shapes[1]));
+    EXPECT_FALSE(read_permit({}, pair[1], pair[0]));
 }
 
 TEST(SeenFrames, AStatusIsReadBackAndADamagedOneIsNot) {

@@ -83,15 +83,15 @@ TEST(SessionWatch, ABoardTakesPermitsThatAnswerForIt) {
             ASSERT_EQ(decode_session(0x583, frame, session), FrameStatus::ok);
             ASSERT_NE(watch.on_session(session, k + 120), SessionStatus::held_up);
         }
-        const auto pair = encode_permit2({},
-                                         {.word = PermitWord::run,
-                                          .sync_counter = sync_counter_of(k + 120),
-                                          .live_counter = static_cast<std::uint8_t>(k),
-                                          .known_answer_signature = 0xC5A3,
-                                          .samples = 10,
-                                          .nonce = watch.nonce(),
-                                          .lap = watch.lap_of(k + 120)},
-                                         0);
+        const auto pair = encode_permit({},
+                                        {.word = PermitWord::run,
+                                         .sync_counter = sync_counter_of(k + 120),
+                                         .live_counter = static_cast<std::uint8_t>(k),
+                                         .known_answer_signature = 0xC5A3,
+                                         .samples = 10,
+                                         .nonce = watch.nonce(),
+                                         .lap = watch.lap_of(k + 120)},
+                                        0);
         axg_board_heard heard = AXG_BOARD_HEARD_NOTHING;
         for (const CanFrame& frame : pair) {
             axg_board_can_frame received{};

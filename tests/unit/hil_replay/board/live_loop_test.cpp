@@ -27,8 +27,7 @@ Approach to_the_right() {
     return approach;
 }
 
-/// With both versions of the permit.
-class LiveLoopTest : public testing::TestWithParam<std::uint8_t> {
+class LiveLoopTest : public testing::Test {
   protected:
     void cycles(int count) {
         for (int i = 0; i < count; ++i) {
@@ -45,7 +44,6 @@ class LiveLoopTest : public testing::TestWithParam<std::uint8_t> {
         Machine out = motion_test_machine();
         out.can.hashes_in_id = 0x582;
         out.can.hashes_out_id = 0x602;
-        out.can.permit_version = GetParam();
         return out;
     }();
     LiveBus bus{machine, 600, kHashes};
@@ -54,7 +52,7 @@ class LiveLoopTest : public testing::TestWithParam<std::uint8_t> {
 };
 
 // One SYNC and all axis frames a period, at the instant of the latch and no other.
-TEST_P(LiveLoopTest, EachPeriodLeavesAtItsLatch) {
+TEST_F(LiveLoopTest, EachPeriodLeavesAtItsLatch) {
     const std::int64_t begun_us = bus.now_us();
     ASSERT_TRUE(loop.listen());
     EXPECT_TRUE(bus.wire.sent.empty()) << "it listens first";
@@ -73,7 +71,7 @@ TEST_P(LiveLoopTest, EachPeriodLeavesAtItsLatch) {
 }
 
 // Late is more than half a period; how late the worst was is kept.
-TEST_P(LiveLoopTest, LatePeriodsAreCounted) {
+TEST_F(LiveLoopTest, LatePeriodsAreCounted) {
     ASSERT_TRUE(loop.listen());
     bus.has_guard = false;
     cycles(3);
@@ -87,7 +85,7 @@ TEST_P(LiveLoopTest, LatePeriodsAreCounted) {
 }
 
 // A stop counts from its arrival, not from when a sleeping board reads it.
-TEST_P(LiveLoopTest, AStopCountsFromItsArrival) {
+TEST_F(LiveLoopTest, AStopCountsFromItsArrival) {
     ASSERT_TRUE(loop.listen());
     cycles(30);
     ASSERT_EQ(board.state(), BoardState::moving);
@@ -102,7 +100,7 @@ TEST_P(LiveLoopTest, AStopCountsFromItsArrival) {
 }
 
 // Without a guard the permit runs out n periods after its sample, and the board brakes by itself.
-TEST_P(LiveLoopTest, ABoardWhoseGuardDiesBrakes) {
+TEST_F(LiveLoopTest, ABoardWhoseGuardDiesBrakes) {
     ASSERT_TRUE(loop.listen());
     cycles(30);
     bus.has_guard = false;
@@ -113,7 +111,7 @@ TEST_P(LiveLoopTest, ABoardWhoseGuardDiesBrakes) {
               machine.can.permit_samples.most * machine.can.sample_us);
 }
 
-TEST_P(LiveLoopTest, APersonsStopBrakes) {
+TEST_F(LiveLoopTest, APersonsStopBrakes) {
     ASSERT_TRUE(loop.listen());
     cycles(30);
     const std::int64_t at_us = loop.board_now_us();
@@ -126,7 +124,7 @@ TEST_P(LiveLoopTest, APersonsStopBrakes) {
 
 // A guard that was stopped before repeats its stop until a board says that it stands: that board
 // may move when the guard was reset, but with no permit from before.
-TEST_P(LiveLoopTest, AStopBeforeTheFirstPermitIsAcknowledged) {
+TEST_F(LiveLoopTest, AStopBeforeTheFirstPermitIsAcknowledged) {
     ASSERT_TRUE(loop.listen());
     bus.has_guard = false;
     cycles(2);
@@ -138,11 +136,11 @@ TEST_P(LiveLoopTest, AStopBeforeTheFirstPermitIsAcknowledged) {
     cycles(5);
     EXPECT_EQ(board.state(), BoardState::waiting) << "the permit was of before the stop";
     bus.has_guard = true;
-    cycles(GetParam() == 1 ? 20 : 130);  // permit 2 waits for the next session frame
+    cycles(130);  // until the next session frame
     EXPECT_EQ(board.state(), BoardState::moving);
 }
 
-TEST_P(LiveLoopTest, WhatTheWireHeldBeforeIsForgotten) {
+TEST_F(LiveLoopTest, WhatTheWireHeldBeforeIsForgotten) {
     for (int i = 0; i < 2; ++i) {
         bus.wire.arrive(encode_stop(machine.can, bus.wire.now_us));
     }
@@ -151,13 +149,10 @@ TEST_P(LiveLoopTest, WhatTheWireHeldBeforeIsForgotten) {
 }
 
 // The id of each frame that a board alone sends; echoes of its own are none of another's.
-TEST_P(LiveLoopTest, AnotherBoardOnTheWireIsNoticed) {
-    std::vector<std::uint32_t> ids{machine.can.sync_id, machine.can.axis_ids[0],
-                                   machine.can.axis_ids[2], machine.can.heartbeat_in_id,
-                                   machine.can.hashes_in_id};
-    if (GetParam() == 2) {
-        ids.push_back(machine.can.session_in_id);
-    }
+TEST_F(LiveLoopTest, AnotherBoardOnTheWireIsNoticed) {
+    const std::vector<std::uint32_t> ids{machine.can.sync_id,      machine.can.axis_ids[0],
+                                         machine.can.axis_ids[2],  machine.can.heartbeat_in_id,
+                                         machine.can.hashes_in_id, machine.can.session_in_id};
     for (const std::uint32_t id : ids) {
         LiveBus other(machine, 600);
         LiveLoop listener(machine, board, other.wire, other.clock());
@@ -175,7 +170,7 @@ TEST_P(LiveLoopTest, AnotherBoardOnTheWireIsNoticed) {
 }
 
 // The guard asks with its own hash of a part; the board's own goes back.
-TEST_P(LiveLoopTest, HashesAreAnswered) {
+TEST_F(LiveLoopTest, HashesAreAnswered) {
     ASSERT_TRUE(loop.listen());
     bus.has_guard = false;
     bus.wire.arrive(encode_hash(machine.can.hashes_out_id, {2, 99}, bus.now_us() + 100));
@@ -191,8 +186,8 @@ TEST_P(LiveLoopTest, HashesAreAnswered) {
 }
 
 // Each of the guard's is answered; a part that differs, or that the guard never said, keeps a board
-// of permit 2 where it is.
-TEST_P(LiveLoopTest, ABoardOfAnotherMachineDoesNotMove) {
+// where it is.
+TEST_F(LiveLoopTest, ABoardOfAnotherMachineDoesNotMove) {
     for (std::size_t part = 0; part < kHashParts; ++part) {
         ConfigurationHashes others = kHashes;
         others.of[part] += 1;
@@ -204,8 +199,7 @@ TEST_P(LiveLoopTest, ABoardOfAnotherMachineDoesNotMove) {
         for (int i = 0; i < 100; ++i) {
             ASSERT_TRUE(waiting.cycle());
         }
-        EXPECT_EQ(waits.state(), GetParam() == 2 ? BoardState::waiting : BoardState::moving)
-            << part;
+        EXPECT_EQ(waits.state(), BoardState::waiting) << part;
         EXPECT_EQ(std::count_if(other.wire.sent.begin(), other.wire.sent.end(),
                                 [this](const CanFrame& frame) {
                                     return frame.id == machine.can.hashes_in_id;
@@ -214,7 +208,7 @@ TEST_P(LiveLoopTest, ABoardOfAnotherMachineDoesNotMove) {
     }
 }
 
-TEST_P(LiveLoopTest, AHashThatChangesInMotionStops) {
+TEST_F(LiveLoopTest, AHashThatChangesInMotionStops) {
     ASSERT_TRUE(loop.listen());
     cycles(30);
     ASSERT_EQ(board.state(), BoardState::moving);
@@ -224,7 +218,7 @@ TEST_P(LiveLoopTest, AHashThatChangesInMotionStops) {
     EXPECT_EQ(board.stop().why, BoardStop::guard_said_stop);
 }
 
-TEST_P(LiveLoopTest, TheLastEmergencyOfAStopIsKept) {
+TEST_F(LiveLoopTest, TheLastEmergencyOfAStopIsKept) {
     ASSERT_TRUE(loop.listen());
     bus.has_guard = false;
     const Emergency sent{.code = EmergencyCode::predicted_collision, .error_register = 1};
@@ -237,7 +231,7 @@ TEST_P(LiveLoopTest, TheLastEmergencyOfAStopIsKept) {
 
 // A queue that is full refuses frames; an interface that is down is lost as well, whichever of
 // sending and reading notices.
-TEST_P(LiveLoopTest, RefusedFramesAndALostInterfaceAreReported) {
+TEST_F(LiveLoopTest, RefusedFramesAndALostInterfaceAreReported) {
     ASSERT_TRUE(loop.listen());
     bus.has_guard = false;
     cycles(1);
@@ -245,7 +239,7 @@ TEST_P(LiveLoopTest, RefusedFramesAndALostInterfaceAreReported) {
     bus.wire.reply = SendStatus::busy;
     cycles(1);
     EXPECT_GT(frames, 3U);
-    EXPECT_GE(loop.report().frames_refused, frames - GetParam()) << "but heartbeat and session";
+    EXPECT_GE(loop.report().frames_refused, frames - 2) << "but heartbeat and session";
     EXPECT_FALSE(loop.report().is_lost);
     bus.wire.reply = SendStatus::down;
     cycles(1);
@@ -258,8 +252,6 @@ TEST_P(LiveLoopTest, RefusedFramesAndALostInterfaceAreReported) {
         EXPECT_TRUE(reader.report().is_lost);
     }
 }
-
-INSTANTIATE_TEST_SUITE_P(Permit, LiveLoopTest, testing::Values(1, 2));
 
 }  // namespace
 }  // namespace axg::test

@@ -118,7 +118,6 @@ class OperatorLoop : public testing::Test {
 
     Machine machine = [] {
         Machine out = motion_test_machine();
-        out.can.permit_version = 2;
         return out;
     }();
     MotionBoard board{machine, kZeroPositions, make_approach(machine, to_the_right()), {}};

@@ -19,8 +19,7 @@ namespace {
 
 constexpr std::array<double, 5> kStart{};
 
-/// With both versions of the permit.
-class BusDrive : public testing::TestWithParam<std::uint8_t> {
+class BusDrive : public testing::Test {
   protected:
     /// Out and at rest again in 0.8 s, on all axes: jerk up, down for twice as long, and up.
     static CommandedMotion motion() {
@@ -40,7 +39,6 @@ class BusDrive : public testing::TestWithParam<std::uint8_t> {
 
     Machine machine = [] {
         Machine out = motion_test_machine();
-        out.can.permit_version = GetParam();
         return out;
     }();
     LiveBus bus{machine, 600};
@@ -64,7 +62,7 @@ Place place_of(const MotionBoard& board, std::int64_t time_us) {
 
 // One board under both kinds of time: the true axes go through the same places at the same instants
 // of their motion, bit for bit.
-TEST_P(BusDrive, MovesAsInSimulatedTime) {
+TEST_F(BusDrive, MovesAsInSimulatedTime) {
     std::vector<Place> live, simulated;
     observers.watch = [&](std::int64_t time_us, const MotionBoard& board) {
         live.push_back(place_of(board, time_us));
@@ -85,7 +83,7 @@ TEST_P(BusDrive, MovesAsInSimulatedTime) {
 }
 
 // This computer's own lateness is jitter enough; the rest is drawn as for a simulated drive.
-TEST_P(BusDrive, ItsSamplesHaveNoJitterOfTheirOwn) {
+TEST_F(BusDrive, ItsSamplesHaveNoJitterOfTheirOwn) {
     machine.guard.latch_jitter_s = 50e-6;
     machine.guard.board_reaction_s = 3e-3;
     EXPECT_EQ(promised_live_board(machine, 7).latch_jitter_us_max, 0);
@@ -95,7 +93,7 @@ TEST_P(BusDrive, ItsSamplesHaveNoJitterOfTheirOwn) {
 
 // Before the board falls silent a guard sees that the axes stand, within 150 ms of rest; the result
 // is of before.
-TEST_P(BusDrive, SaysThatItRests) {
+TEST_F(BusDrive, SaysThatItRests) {
     const BusDriveResult result = drive();
     StandstillWatch watch(machine, {}, standstill_rules(machine), INT64_MIN);
     std::uint64_t syncs = 0, stands_at = 0;
@@ -109,14 +107,14 @@ TEST_P(BusDrive, SaysThatItRests) {
     EXPECT_LT(stands_at, result.drive.samples + 150);
 }
 
-TEST_P(BusDrive, EndedWhileItMovesItBrakesFirst) {
+TEST_F(BusDrive, EndedWhileItMovesItBrakesFirst) {
     observers.each = [this](const MotionBoard& board) { is_ended.store(board.samples() > 200); };
     const BusDriveResult result = drive();
     EXPECT_EQ(result.drive.state, BoardState::stopped);
     EXPECT_EQ(result.drive.board_stop.why, BoardStop::person_said_stop);
 }
 
-TEST_P(BusDrive, EndedWhileItWaitsItHasNotMoved) {
+TEST_F(BusDrive, EndedWhileItWaitsItHasNotMoved) {
     bus.has_guard = false;
     observers.each = [this](const MotionBoard& board) { is_ended.store(board.samples() == 3000); };
     const BusDriveResult result = drive();
@@ -125,7 +123,7 @@ TEST_P(BusDrive, EndedWhileItWaitsItHasNotMoved) {
 }
 
 // Whether it waits or moves: the interface is gone, and so is the drive.
-TEST_P(BusDrive, EndsWithItsInterface) {
+TEST_F(BusDrive, EndsWithItsInterface) {
     for (const bool is_moving : {false, true}) {
         LiveBus other(machine, 600);
         other.has_guard = is_moving;
@@ -145,7 +143,7 @@ TEST_P(BusDrive, EndsWithItsInterface) {
     }
 }
 
-TEST_P(BusDrive, SendsNothingBesideAnotherBoard) {
+TEST_F(BusDrive, SendsNothingBesideAnotherBoard) {
     observers.each = [](const MotionBoard&) { FAIL() << "a sample was latched"; };
     CanFrame frame;
     frame.id = machine.can.sync_id;
@@ -154,8 +152,6 @@ TEST_P(BusDrive, SendsNothingBesideAnotherBoard) {
     EXPECT_EQ(drive().wire.other_board_id, machine.can.sync_id);
     EXPECT_TRUE(bus.wire.sent.empty());
 }
-
-INSTANTIATE_TEST_SUITE_P(Permit, BusDrive, testing::Values(1, 2));
 
 }  // namespace
 }  // namespace axg::test

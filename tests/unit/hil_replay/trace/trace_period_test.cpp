@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "hil_replay/trace/added_session.hpp"
 #include "hil_replay/trace/candump_log.hpp"
 #include "tests/support/can_board.hpp"
 #include "tests/support/session_frame.hpp"
@@ -115,6 +116,38 @@ TEST(TraceSession, IsFoundInTheFirstSecond) {
     EXPECT_FALSE(has(5'000'100, true));
     const auto empty = read_candump("t.log", "", {});
     EXPECT_FALSE(has_session_frames(*empty, 0x583));
+}
+
+// Over more than two laps, with lost SYNCs, the added session is one that a receiver believes.
+TEST(TraceSession, IsAddedAsABoardWouldSendIt) {
+    const Machine machine = test::five_axis_machine(CanFormat::classical);
+    AxisEncoder encoder(machine, {.says_session = false});
+    std::string text;
+    for (std::uint64_t k = 0; k < 600; ++k) {
+        for (const CanFrame& frame : test::frames_of(encoder, test::snapshot_at(machine, k))) {
+            if (frame.id != machine.can.sync_id || k % 7 != 6) {
+                append_candump(text, frame, "can0");
+            }
+        }
+    }
+    const auto trace = with_session(read_candump("t.log", text, {}), machine.can);
+    AxisReceiver receiver(machine);
+    std::uint64_t sessions = 0, samples = 0;
+    CanFrame frame;
+    while (trace->next(frame)) {
+        sessions += frame.id == machine.can.session_in_id ? 1U : 0U;
+        const ReceiverEvent event = receiver.on_frame(frame);
+        EXPECT_NE(event.fault, ReceiverFault::held_up);
+        if (event.kind != ReceiverEvent::Kind::snapshot) {
+            continue;
+        }
+        ++samples;
+        const auto session = receiver.session_of(event.sync_counter);
+        ASSERT_EQ(session.has_value(), samples > 1) << event.snapshot.sample;
+        EXPECT_EQ(session ? session->lap : 0, event.snapshot.sample / kSyncCounterMax);
+    }
+    EXPECT_GT(samples, 500U);
+    EXPECT_EQ(sessions, 7U) << "at once twice, then every 100 ms";
 }
 
 }  // namespace

@@ -75,9 +75,9 @@ TEST_F(BusViewTest, StopFrameAndWordStopEndThePermit) {
     EXPECT_EQ(state.stop_us, last_us() + 500);
     hear_all();
     ASSERT_NE(state.permit_end_us, kNeverSeen);
-    const auto pair = encode_permit2(
-        machine.can, {.word = PermitWord::stop, .sync_counter = 1, .live_counter = 1},
-        last_us() + 600);
+    const auto pair =
+        encode_permit(machine.can, {.word = PermitWord::stop, .sync_counter = 1, .live_counter = 1},
+                      last_us() + 600);
     hear({pair[0], pair[1]});
     EXPECT_EQ(state.permit->word, PermitWord::stop);
     EXPECT_EQ(state.permit_end_us, kNeverSeen);
@@ -132,29 +132,6 @@ TEST_F(BusViewTest, ReadsOnAfterABoardThatFails) {
     hear(frames);
     EXPECT_GT(state.board_us, silent_us);
     EXPECT_EQ(state.answer, PermitAnswer::right);
-}
-
-TEST_F(BusViewTest, PermitsOfVersion1AreReadToo) {
-    Machine older = machine;
-    older.can.permit_version = 1;
-    older.can.permit_samples = {4, 4};
-    BusView of_older(older, hashes);
-    std::uint8_t live = 0;
-    for (std::uint64_t k = 0; k < 20; ++k) {
-        const Permit permit{.word = PermitWord::run,
-                            .sync_counter = sync_counter_of(k),
-                            .live_counter = ++live,
-                            .known_answer_signature = kKnownAnswerSignature,
-                            .speed_cap = 250};
-        for (const CanFrame& frame :
-             encode_permit(older.can, permit, static_cast<std::int64_t>(1000 * k))) {
-            of_older.on_frame(frame);
-        }
-    }
-    ASSERT_TRUE(of_older.state().permit);
-    EXPECT_EQ(of_older.state().permit->samples, 4);
-    EXPECT_EQ(of_older.state().answer, PermitAnswer::right);
-    EXPECT_EQ(of_older.state().permit_end_us, 19'000 + 4'000);
 }
 
 }  // namespace

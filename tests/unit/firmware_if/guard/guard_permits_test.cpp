@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The live guard with permit version 2: what it sends is judged by the library for boards, and what
+// The permits of the live guard: what it sends is judged by the library for boards, and what
 // the board says of its session is lost, held up or changed.
 #include <gtest/gtest.h>
 
@@ -13,11 +13,10 @@ namespace {
 
 constexpr std::uint32_t kNonce = 0xC0FFEE;
 
-class GuardPermit2 : public testing::TestWithParam<CanFormat> {
+class GuardPermits : public testing::TestWithParam<CanFormat> {
   protected:
     static Machine machine_of(CanFormat format) {
         Machine machine = test::five_axis_machine(format);
-        machine.can.permit_version = 2;
         return machine;
     }
     const Guard& guard() const { return world.guard->guard(); }
@@ -83,7 +82,7 @@ struct JudgedBoard {
     std::size_t permits = 0, refused = 0;
 };
 
-TEST_P(GuardPermit2, EveryPermitIsOneForABoardOfTheLibrary) {
+TEST_P(GuardPermits, EveryPermitIsOneForABoardOfTheLibrary) {
     arm();
     world.run_periods(1000);
     const JudgedBoard board(world);
@@ -98,7 +97,7 @@ TEST_P(GuardPermit2, EveryPermitIsOneForABoardOfTheLibrary) {
     EXPECT_EQ(world.count_sent(0x001), 0U);
 }
 
-TEST_P(GuardPermit2, WithoutASessionItIsNotReady) {
+TEST_P(GuardPermits, WithoutASessionItIsNotReady) {
     world.says_session = [](test::SessionSays&) { return false; };
     world.run_periods(1200);
     EXPECT_EQ(guard().phase, GuardPhase::selftest);
@@ -111,7 +110,7 @@ TEST_P(GuardPermit2, WithoutASessionItIsNotReady) {
     EXPECT_TRUE(world.guard->has_said_session());
 }
 
-TEST_P(GuardPermit2, ItSaysWhyTheNewestSampleHasNoPermit) {
+TEST_P(GuardPermits, ItSaysWhyTheNewestSampleHasNoPermit) {
     using Why = WithheldPermit::Why;
     EXPECT_EQ(world.guard->withheld().why, Why::no_sample);
     world.run_periods(200);
@@ -130,7 +129,7 @@ TEST_P(GuardPermit2, ItSaysWhyTheNewestSampleHasNoPermit) {
     EXPECT_EQ(world.guard->withheld().why, Why::late);
 }
 
-TEST_P(GuardPermit2, ASessionThatEndsEndsThePermitsAfter300Ms) {
+TEST_P(GuardPermits, ASessionThatEndsEndsThePermitsAfter300Ms) {
     arm();
     world.run_periods(150);
     std::int64_t said_us = 0;
@@ -152,7 +151,7 @@ TEST_P(GuardPermit2, ASessionThatEndsEndsThePermitsAfter300Ms) {
     }
 }
 
-TEST_P(GuardPermit2, TwoLostSessionFramesAreBorne) {
+TEST_P(GuardPermits, TwoLostSessionFramesAreBorne) {
     arm();
     int lost = 0;
     world.says_session = [&](test::SessionSays&) { return ++lost % 3 == 0; };
@@ -161,7 +160,7 @@ TEST_P(GuardPermit2, TwoLostSessionFramesAreBorne) {
     EXPECT_EQ(guard().phase, GuardPhase::armed) << to_text(guard().cause);
 }
 
-TEST_P(GuardPermit2, ASessionOfAnotherLapIsAStop) {
+TEST_P(GuardPermits, ASessionOfAnotherLapIsAStop) {
     arm();
     const std::int64_t from_us = world.wire.now_us;
     world.says_session = [](test::SessionSays& says) {
@@ -175,7 +174,7 @@ TEST_P(GuardPermit2, ASessionOfAnotherLapIsAStop) {
     EXPECT_GE(world.count_sent(0x001, from_us), 1U);
 }
 
-TEST_P(GuardPermit2, AfterAPersonArmedTheBoardItAnswersForTheNewNonce) {
+TEST_P(GuardPermits, AfterAPersonArmedTheBoardItAnswersForTheNewNonce) {
     arm();
     world.says_session = [](test::SessionSays& says) {
         says.nonce = 7;
@@ -188,19 +187,19 @@ TEST_P(GuardPermit2, AfterAPersonArmedTheBoardItAnswersForTheNewNonce) {
     while (sync_counter_of(sample) != permit.data[1]) {
         --sample;
     }
-    const auto made = encode_permit2(world.machine.can,
-                                     {.word = PermitWord::run,
-                                      .sync_counter = permit.data[1],
-                                      .live_counter = permit.data[2],
-                                      .known_answer_signature = kKnownAnswerSignature,
-                                      .samples = 3,
-                                      .nonce = 7,
-                                      .lap = static_cast<std::uint16_t>(sample / 240)},
-                                     0);
+    const auto made = encode_permit(world.machine.can,
+                                    {.word = PermitWord::run,
+                                     .sync_counter = permit.data[1],
+                                     .live_counter = permit.data[2],
+                                     .known_answer_signature = kKnownAnswerSignature,
+                                     .samples = 3,
+                                     .nonce = 7,
+                                     .lap = static_cast<std::uint16_t>(sample / 240)},
+                                    0);
     EXPECT_EQ(permit.data, made[0].data);
 }
 
-TEST_P(GuardPermit2, OnePairWithTheWordStopFollowsTheStopFrame) {
+TEST_P(GuardPermits, OnePairWithTheWordStopFollowsTheStopFrame) {
     arm();
     const std::int64_t from_us = world.wire.now_us;
     world.guard->report(GuardFault::engine, from_us);
@@ -224,14 +223,14 @@ TEST_P(GuardPermit2, OnePairWithTheWordStopFollowsTheStopFrame) {
     EXPECT_EQ(after[1].data[5], 250);
     EXPECT_EQ(after[1].data[6], 0);
     EXPECT_EQ(after[1].data[7], 0) << "no samples";
-    const auto made = encode_permit2(world.machine.can,
-                                     {.word = PermitWord::stop,
-                                      .sync_counter = after[1].data[1],
-                                      .live_counter = after[1].data[2],
-                                      .known_answer_signature = kKnownAnswerSignature,
-                                      .nonce = kNonce,
-                                      .lap = 0},
-                                     0);
+    const auto made = encode_permit(world.machine.can,
+                                    {.word = PermitWord::stop,
+                                     .sync_counter = after[1].data[1],
+                                     .live_counter = after[1].data[2],
+                                     .known_answer_signature = kKnownAnswerSignature,
+                                     .nonce = kNonce,
+                                     .lap = 0},
+                                    0);
     EXPECT_EQ(after[1].data, made[0].data);
     const std::uint64_t latched = static_cast<std::uint64_t>(from_us - world.kBeginUs) / 1000;
     EXPECT_LE(after[1].data[1], sync_counter_of(latched));
@@ -245,7 +244,7 @@ TEST_P(GuardPermit2, OnePairWithTheWordStopFollowsTheStopFrame) {
 }
 
 // The word alone stops a board that knows another id for the stop.
-TEST_P(GuardPermit2, TheWordStopsABoardThatDoesNotKnowTheStopFrame) {
+TEST_P(GuardPermits, TheWordStopsABoardThatDoesNotKnowTheStopFrame) {
     arm();
     const std::int64_t stop_us = world.wire.now_us;
     world.guard->report(GuardFault::engine, stop_us);
@@ -266,7 +265,7 @@ TEST_P(GuardPermit2, TheWordStopsABoardThatDoesNotKnowTheStopFrame) {
     EXPECT_EQ(fixture.board.cause, AXG_BOARD_CAUSE_STOP_WORD);
 }
 
-TEST_P(GuardPermit2, WithoutAnySampleTheWordStopEchoesOneThatExists) {
+TEST_P(GuardPermits, WithoutAnySampleTheWordStopEchoesOneThatExists) {
     world.guard->report(GuardFault::engine, world.wire.now_us);
     world.run_until(world.kBeginUs - 1000);
     const auto words = sent_with(0x103);
@@ -275,7 +274,7 @@ TEST_P(GuardPermit2, WithoutAnySampleTheWordStopEchoesOneThatExists) {
     EXPECT_EQ(words[0].data[1], 1);
 }
 
-TEST_P(GuardPermit2, HintsLeaveEvery10MsWithTheNewestSample) {
+TEST_P(GuardPermits, HintsLeaveEvery10MsWithTheNewestSample) {
     world.verdict = [](std::uint64_t) {
         CycleResult result{.has_permit = true, .known_answer_signature = kKnownAnswerSignature};
         result.advisories.pair = 2;
@@ -296,7 +295,7 @@ TEST_P(GuardPermit2, HintsLeaveEvery10MsWithTheNewestSample) {
     EXPECT_NE(hints[0].data[0], hints[1].data[0]) << "of the sample it was proven for";
 }
 
-TEST_P(GuardPermit2, HintsFromAnotherSenderAreASecondGuard) {
+TEST_P(GuardPermits, HintsFromAnotherSenderAreASecondGuard) {
     arm();
     CanFrame foreign;
     foreign.id = world.machine.can.hints_id;
@@ -307,7 +306,7 @@ TEST_P(GuardPermit2, HintsFromAnotherSenderAreASecondGuard) {
     EXPECT_EQ(guard().cause, GuardFault::second_guard);
 }
 
-TEST_P(GuardPermit2, ItListensForTheSessionAndItsOwnHints) {
+TEST_P(GuardPermits, ItListensForTheSessionAndItsOwnHints) {
     std::array<std::uint32_t, kLiveIdsMax> ids{};
     std::uint32_t count = live_ids(world.machine, ids);
     const auto has = [&](std::uint32_t id) {
@@ -315,13 +314,13 @@ TEST_P(GuardPermit2, ItListensForTheSessionAndItsOwnHints) {
     };
     EXPECT_TRUE(has(0x583));
     EXPECT_TRUE(has(0x682));
-    world.machine.can.permit_version = 1;
+    world.machine.can.format = CanFormat::signals;  // no sample counter
     count = live_ids(world.machine, ids);
     EXPECT_FALSE(has(0x583));
     EXPECT_FALSE(has(0x682));
 }
 
-INSTANTIATE_TEST_SUITE_P(Formats, GuardPermit2,
+INSTANTIATE_TEST_SUITE_P(Formats, GuardPermits,
                          testing::Values(CanFormat::classical, CanFormat::fd),
                          [](const testing::TestParamInfo<CanFormat>& tested) {
                              return tested.param == CanFormat::fd ? "fd" : "classical";

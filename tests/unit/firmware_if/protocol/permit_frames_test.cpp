@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The guard's side of permit version 2 against the board's: its permits are those of the vectors,
+// The guard's side of the permit against the board's: its permits are those of the vectors,
 // and the session frames of the library for boards are read, and nothing else is.
-#include "firmware_if/protocol/permit2_frames.hpp"
+#include "firmware_if/protocol/permit_frames.hpp"
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <string>
 
 #include "tests/support/board_fixture.hpp"
@@ -25,22 +26,36 @@ CanFrame frame_of(const axg_board_can_frame& made) {
     return frame;
 }
 
-TEST(Permit2Frames, PermitsAreThoseOfTheVectors) {
+TEST(PermitWord, AnyTwoDifferInFourBitsAndNoneIsZero) {
+    const unsigned words[] = {0xA5, 0xC3, 0x5A, 0x3C};
+    EXPECT_EQ(static_cast<unsigned>(PermitWord::run), words[0]);
+    EXPECT_EQ(static_cast<unsigned>(PermitWord::slow), words[1]);
+    EXPECT_EQ(static_cast<unsigned>(PermitWord::stop), words[2]);
+    EXPECT_EQ(static_cast<unsigned>(PermitWord::jog), words[3]);
+    for (const unsigned a : words) {
+        EXPECT_GE(std::popcount(a), 4);
+        for (const unsigned b : words) {
+            EXPECT_TRUE(a == b || std::popcount(a ^ b) >= 4);
+        }
+    }
+}
+
+TEST(PermitFrames, PermitsAreThoseOfTheVectors) {
     const auto vectors = test::Json::parse_file(AXG_SOURCE_DIR "/tests/vectors/permit2.json");
     ASSERT_GE(vectors["permits"].size(), 6U);
     for (const auto& one : vectors["permits"]) {
         SCOPED_TRACE(one["name"].get<std::string>());
-        const Permit2 permit{.word = static_cast<PermitWord>(one["word"].get<int>()),
-                             .sync_counter = one["echo"].get<std::uint8_t>(),
-                             .live_counter = one["live"].get<std::uint8_t>(),
-                             .known_answer_signature = 0xC5A3,
-                             .cap = one["cap"].get<std::uint8_t>(),
-                             .mask = one["mask"].get<std::uint8_t>(),
-                             .samples = one["n"].get<std::uint8_t>(),
-                             .level = one["level"].get<std::uint8_t>(),
-                             .nonce = one["nonce"].get<std::uint32_t>(),
-                             .lap = one["lap"].get<std::uint16_t>()};
-        const auto pair = encode_permit2({}, permit, 7);
+        const Permit permit{.word = static_cast<PermitWord>(one["word"].get<int>()),
+                            .sync_counter = one["echo"].get<std::uint8_t>(),
+                            .live_counter = one["live"].get<std::uint8_t>(),
+                            .known_answer_signature = 0xC5A3,
+                            .cap = one["cap"].get<std::uint8_t>(),
+                            .mask = one["mask"].get<std::uint8_t>(),
+                            .samples = one["n"].get<std::uint8_t>(),
+                            .level = one["level"].get<std::uint8_t>(),
+                            .nonce = one["nonce"].get<std::uint32_t>(),
+                            .lap = one["lap"].get<std::uint16_t>()};
+        const auto pair = encode_permit({}, permit, 7);
         EXPECT_EQ(hex_of(pair[0]), one["plain"].get<std::string>());
         EXPECT_EQ(hex_of(pair[1]), one["twin"].get<std::string>());
         EXPECT_EQ(pair[0].id, 0x103U);
@@ -50,17 +65,17 @@ TEST(Permit2Frames, PermitsAreThoseOfTheVectors) {
 }
 
 // With jog and stop a cap means nothing: it is sent as none, whatever it was.
-TEST(Permit2Frames, JogAndStopOrderNoCap) {
+TEST(PermitFrames, JogAndStopOrderNoCap) {
     for (const PermitWord word : {PermitWord::jog, PermitWord::stop}) {
-        const auto pair = encode_permit2({}, {.word = word, .cap = 20, .mask = 0xFF}, 0);
+        const auto pair = encode_permit({}, {.word = word, .cap = 20, .mask = 0xFF}, 0);
         EXPECT_EQ(pair[0].data[5], 250);
         EXPECT_EQ(pair[0].data[6], 0);
     }
 }
 
-TEST(Permit2Frames, AProvenCycleIsAPermitForItsSample) {
+TEST(PermitFrames, AProvenCycleIsAPermitForItsSample) {
     CycleResult result{.has_permit = true, .known_answer_signature = 0xC5A3, .samples = 15};
-    const Permit2 run = permit2_of(result, 42, 17);
+    const Permit run = permit_of(result, 42, 17);
     EXPECT_EQ(run.word, PermitWord::run);
     EXPECT_EQ(run.sync_counter, 17);
     EXPECT_EQ(run.live_counter, 42);
@@ -70,47 +85,47 @@ TEST(Permit2Frames, AProvenCycleIsAPermitForItsSample) {
     EXPECT_EQ(run.samples, 15);
     EXPECT_EQ(run.level, 0);
     result.advisories.clearance_level = ClearanceLevel::warn;
-    EXPECT_EQ(permit2_of(result, 1, 1).level, 1);
-    EXPECT_EQ(permit2_of(result, 1, 1).word, PermitWord::run);
+    EXPECT_EQ(permit_of(result, 1, 1).level, 1);
+    EXPECT_EQ(permit_of(result, 1, 1).word, PermitWord::run);
     result.advisories.clearance_level = ClearanceLevel::slow;
-    EXPECT_EQ(permit2_of(result, 1, 1).level, 2);
-    EXPECT_EQ(permit2_of(result, 1, 1).word, PermitWord::slow);
+    EXPECT_EQ(permit_of(result, 1, 1).level, 2);
+    EXPECT_EQ(permit_of(result, 1, 1).word, PermitWord::slow);
     result.advisories.clearance_level = ClearanceLevel::stop;
-    EXPECT_EQ(permit2_of(result, 1, 1).level, 3);
+    EXPECT_EQ(permit_of(result, 1, 1).level, 3);
     result.known_answer_signature = 0x1234;
-    EXPECT_EQ(permit2_of(result, 1, 1).known_answer_signature, 0x1234) << "the engine's own";
+    EXPECT_EQ(permit_of(result, 1, 1).known_answer_signature, 0x1234) << "the engine's own";
 }
 
 // Without a promise of the board the cap is advice, for all axes; 0 would be an order to hold.
-TEST(Permit2Frames, TheSpeedCapIsAdviceForAllAxes) {
+TEST(PermitFrames, TheSpeedCapIsAdviceForAllAxes) {
     CycleResult result{.has_permit = true};
     result.advisories.speed_cap = 60;
-    EXPECT_EQ(permit2_of(result, 1, 1).cap, 60);
-    EXPECT_EQ(permit2_of(result, 1, 1).mask, 0xFF);
+    EXPECT_EQ(permit_of(result, 1, 1).cap, 60);
+    EXPECT_EQ(permit_of(result, 1, 1).mask, 0xFF);
     result.advisories.speed_cap = 0;
-    EXPECT_EQ(permit2_of(result, 1, 1).cap, 1);
+    EXPECT_EQ(permit_of(result, 1, 1).cap, 1);
 }
 
 // What was proven with a cap is sent with it, hold too; the advice of the same cycle is not.
-TEST(Permit2Frames, AnEnforcedCapIsWhatWasProven) {
+TEST(PermitFrames, AnEnforcedCapIsWhatWasProven) {
     CycleResult result{.has_permit = true};
     result.advisories.speed_cap = 60;
     result.has_cap = true;
-    EXPECT_EQ(permit2_of(result, 1, 1).cap, kPermitCapNone);
-    EXPECT_EQ(permit2_of(result, 1, 1).mask, 0);
+    EXPECT_EQ(permit_of(result, 1, 1).cap, kPermitCapNone);
+    EXPECT_EQ(permit_of(result, 1, 1).mask, 0);
     result.cap_order = {.cap = 0, .mask = 0xFF};
-    EXPECT_EQ(permit2_of(result, 1, 1).cap, 0);
-    EXPECT_EQ(permit2_of(result, 1, 1).mask, 0xFF);
+    EXPECT_EQ(permit_of(result, 1, 1).cap, 0);
+    EXPECT_EQ(permit_of(result, 1, 1).mask, 0xFF);
 }
 
-TEST(Permit2Frames, ACycleWithoutAPermitHasNoSamples) {
-    const Permit2 stop = permit2_of({.samples = 3}, 1, 2);
+TEST(PermitFrames, ACycleWithoutAPermitHasNoSamples) {
+    const Permit stop = permit_of({.samples = 3}, 1, 2);
     EXPECT_EQ(stop.word, PermitWord::stop);
     EXPECT_EQ(stop.samples, 0);
     EXPECT_EQ(stop.cap, kPermitCapNone);
 }
 
-TEST(Permit2Frames, SessionFramesOfABoardAreRead) {
+TEST(PermitFrames, SessionFramesOfABoardAreRead) {
     test::BoardFixture fixture;
     fixture.arm();
     ASSERT_TRUE(fixture.latch_at(3 * AXG_BOARD_SYNC_MAX + 16, 100'000));
@@ -122,7 +137,7 @@ TEST(Permit2Frames, SessionFramesOfABoardAreRead) {
     EXPECT_EQ(session, (Session{.nonce = 0xC0FFEE, .lap = 3, .sync_counter = 17, .counter = 1}));
 }
 
-TEST(Permit2Frames, ASessionThatIsPlayedIsThatOfTheLibrary) {
+TEST(PermitFrames, ASessionThatIsPlayedIsThatOfTheLibrary) {
     test::BoardFixture fixture;
     fixture.arm();
     ASSERT_TRUE(fixture.latch_at(3 * AXG_BOARD_SYNC_MAX + 16, 100'000));
@@ -135,7 +150,7 @@ TEST(Permit2Frames, ASessionThatIsPlayedIsThatOfTheLibrary) {
     EXPECT_EQ(played.time_us, 9);
 }
 
-TEST(Permit2Frames, WhatIsNotExactlyASessionFrameIsRefused) {
+TEST(PermitFrames, WhatIsNotExactlyASessionFrameIsRefused) {
     test::BoardFixture fixture;
     fixture.arm();
     ASSERT_TRUE(fixture.latch_at(16, 100'000));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware_if/protocol/permit2_frames.hpp"
+#include "firmware_if/protocol/permit_frames.hpp"
 
 #include <algorithm>
 
@@ -17,7 +17,7 @@ constexpr std::uint8_t kSessionVersion = 1;
 constexpr std::uint8_t kFrameBytes = 8;
 
 /// Bytes 3 and 4: a CRC over the other bytes, nonce and lap, in one with the known-answer result.
-std::uint16_t answer_of(const std::uint8_t* data, const Permit2& permit) noexcept {
+std::uint16_t answer_of(const std::uint8_t* data, const Permit& permit) noexcept {
     std::array<std::uint8_t, 11> covered{data[0], data[1], data[2], data[5], data[6], data[7]};
     put_little(covered.data() + 6, permit.nonce, 3);
     put_little(covered.data() + 9, permit.lap, 2);
@@ -26,41 +26,43 @@ std::uint16_t answer_of(const std::uint8_t* data, const Permit2& permit) noexcep
 
 }  // namespace
 
-Permit2 permit2_of(const CycleResult& result, std::uint8_t live_counter,
-                   std::uint8_t sync_counter) noexcept {
+Permit permit_of(const CycleResult& result, std::uint8_t live_counter,
+                 std::uint8_t sync_counter) noexcept {
     constexpr std::uint8_t kAllAxes = 0xFF;
     constexpr auto kClear = static_cast<unsigned>(ClearanceLevel::clear);
-    const Permit same = permit_of(result, live_counter, sync_counter);
-    Permit2 permit;
-    permit.word = same.word;
+    Permit permit;
     permit.sync_counter = sync_counter;
     permit.live_counter = live_counter;
     permit.known_answer_signature = result.known_answer_signature;
-    if (permit.word == PermitWord::stop) {
+    if (!result.has_permit) {
         return permit;
     }
+    const Advisories& advisories = result.advisories;
+    permit.word = result.is_jog                                        ? PermitWord::jog
+                  : advisories.clearance_level <= ClearanceLevel::slow ? PermitWord::slow
+                                                                       : PermitWord::run;
     // 0 would be hold: a board that obeys it would wait in place for ever.
-    permit.cap = std::max<std::uint8_t>(same.speed_cap, 1);
+    permit.cap = std::max<std::uint8_t>(advisories.speed_cap, 1);
     permit.mask = permit.cap < kPermitCapNone ? kAllAxes : std::uint8_t{0};
     if (result.has_cap) {  // the cap of the proof
         permit.cap = result.cap_order.cap;
         permit.mask = result.cap_order.mask;
     }
     permit.samples = result.samples;
-    permit.level = static_cast<std::uint8_t>(
-        kClear - static_cast<unsigned>(result.advisories.clearance_level));
+    permit.level =
+        static_cast<std::uint8_t>(kClear - static_cast<unsigned>(advisories.clearance_level));
     return permit;
 }
 
-std::array<CanFrame, 2> encode_permit2(const CanLayout& layout, const Permit2& permit,
-                                       std::int64_t time_us) noexcept {
+std::array<CanFrame, 2> encode_permit(const CanLayout& layout, const Permit& permit,
+                                      std::int64_t time_us) noexcept {
     AXG_ASSERT(permit.samples <= kPermitSamplesMax && permit.level <= 3);
     AXG_ASSERT(permit.cap <= kPermitCapNone);
-    return encode_any_permit2(layout, permit, time_us);
+    return encode_any_permit(layout, permit, time_us);
 }
 
-std::array<CanFrame, 2> encode_any_permit2(const CanLayout& layout, const Permit2& permit,
-                                           std::int64_t time_us) noexcept {
+std::array<CanFrame, 2> encode_any_permit(const CanLayout& layout, const Permit& permit,
+                                          std::int64_t time_us) noexcept {
     const bool has_cap = permit.word == PermitWord::run || permit.word == PermitWord::slow;
     CanFrame plain;
     plain.id = layout.permit_id;
