@@ -26,8 +26,8 @@
 #include "firmware_if/cli/machine_options.hpp"
 #include "firmware_if/cli/whole_file.hpp"
 #include "firmware_if/guard/live_ids.hpp"
-#include "firmware_if/guard/live_socket.hpp"
 #include "firmware_if/system/end_signals.hpp"
+#include "firmware_if/system/live_socket.hpp"
 #include "firmware_if/system/one_guard.hpp"
 #include "firmware_if/system/real_time.hpp"
 

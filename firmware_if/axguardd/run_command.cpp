@@ -29,14 +29,14 @@
 #include "firmware_if/cli/guard_exit.hpp"
 #include "firmware_if/cli/json_output.hpp"
 #include "firmware_if/cli/machine_options.hpp"
-#include "firmware_if/guard/gpio_line.hpp"
-#include "firmware_if/guard/live_socket.hpp"
 #include "firmware_if/setup/choose_engine.hpp"
 #include "firmware_if/setup/cycle_parts.hpp"
 #include "firmware_if/setup/format_plan.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
 #include "firmware_if/setup/unstated_promises.hpp"
+#include "firmware_if/system/gpio_line.hpp"
 #include "firmware_if/system/latch_file.hpp"
+#include "firmware_if/system/live_socket.hpp"
 #include "firmware_if/system/one_guard.hpp"
 
 namespace axg {

@@ -1,28 +1,58 @@
 // SPDX-License-Identifier: Apache-2.0
-// The guard node reads frames from the wire and passes each to the part that handles it.
+// What comes in: frames from the wire, each passed to the part that handles it, and a person's
+// reset and arm, by call and by frames.
 #include "firmware_if/guard/guard_node.hpp"
 
 namespace axg {
+namespace {
+
+constexpr std::uint32_t kNoMessage = kOperatorRefusals, kNoCounter = kOperatorRefusals + 1;
+static_assert(kNoCounter < kOperatorNotes);
+
+const char* words_of(OperatorAction action, OperatorRefusal refusal) noexcept {
+    const bool is_arm = action == OperatorAction::arm;
+    switch (refusal) {
+        case OperatorRefusal::moves:
+            return is_arm ? "arm: the axes are not at rest" : "reset: the axes are not yet at rest";
+        case OperatorRefusal::cause:
+            return "reset: a fault is still present";
+        case OperatorRefusal::phase:
+            return is_arm ? "arm: the guard is not ready" : "reset: nothing is latched";
+        case OperatorRefusal::nonce:
+            return is_arm ? "arm: confirmed with a wrong nonce"
+                          : "reset: confirmed with a wrong nonce";
+        case OperatorRefusal::too_late:
+            return is_arm ? "arm: confirmed later than 5 s" : "reset: confirmed later than 5 s";
+        case OperatorRefusal::board:
+            return "arm: the board stopped by itself and has the nonce of then: arm the board "
+                   "first";
+        case OperatorRefusal::none:
+            break;
+    }
+    return "";
+}
+
+}  // namespace
 
 void GuardNode::read_frames(std::int64_t now_us) noexcept {
-    reads_more_ = true;
+    bus_.reads_more = true;
     for (std::uint32_t i = 0; i < kFramesATurn; ++i) {
         CanArrival arrival;
         switch (wire_.read(arrival)) {
             case ReadStatus::none:
-                reads_more_ = false;
+                bus_.reads_more = false;
                 return;
             case ReadStatus::frame:
-                is_down_ = false;
+                bus_.is_down = false;
                 on_arrival(arrival, now_us);
                 break;
             case ReadStatus::down:
-                is_down_ = true;
+                bus_.is_down = true;
                 on_wire_fault("the interface is down", now_us);
                 break;
             case ReadStatus::gone:
-                is_gone_ = is_down_ = true;
-                reads_more_ = false;
+                bus_.is_gone = bus_.is_down = true;
+                bus_.reads_more = false;
                 on_wire_fault("the interface was removed", now_us);
                 return;
             case ReadStatus::failed:
@@ -89,14 +119,15 @@ void GuardNode::on_own_sync(const CanFrame& frame, std::int64_t now_us) noexcept
 }
 
 void GuardNode::on_hash(const CanFrame& frame, std::int64_t now_us) noexcept {
-    switch (handshake_.on_frame(frame)) {
+    Handshake& handshake = announcements_.handshake();
+    switch (handshake.on_frame(frame)) {
         case Handshake::Heard::nothing:
             break;
         case Handshake::Heard::equal:
             pass_when_agreed(now_us);
             break;
         case Handshake::Heard::different: {
-            note_hash(handshake_.theirs(), now_us);
+            note_hash(handshake.theirs(), now_us);
             fail(GuardFault::refused, now_us);
             break;
         }
@@ -105,15 +136,13 @@ void GuardNode::on_hash(const CanFrame& frame, std::int64_t now_us) noexcept {
 
 /// One line a second of each part.
 void GuardNode::note_hash(const HashFrame& theirs, std::int64_t now_us) noexcept {
-    if (now_us < hash_note_us_[theirs.part]) {
-        return;
+    if (NodeLog::take(log_.hash_us[theirs.part], now_us)) {
+        note({.kind = LiveNote::Kind::hashes,
+              .words = kHashPartNames[theirs.part],
+              .ours = announcements_.handshake().ours(theirs.part),
+              .theirs = theirs.hash},
+             now_us);
     }
-    hash_note_us_[theirs.part] = now_us + kNoteUs;
-    note({.kind = LiveNote::Kind::hashes,
-          .words = kHashPartNames[theirs.part],
-          .ours = handshake_.ours(theirs.part),
-          .theirs = theirs.hash},
-         now_us);
 }
 
 void GuardNode::note_fault(const ReceiverEvent& event, std::int64_t now_us) noexcept {
@@ -136,13 +165,13 @@ void GuardNode::on_receiver(const ReceiverEvent& event, std::int64_t now_us) noe
         // A period belongs to one sample. If that sample was evaluated or lost, this one belongs to
         // the next period, however late the bus delivered the one before.
         const std::int64_t arrived_us = event.snapshot.arrived_us;
-        const bool is_over = has_snapshot_
+        const bool is_over = period_.has_snapshot()
                                  ? period_.may_end(arrived_us)
                                  : event.samples_lost != 0 && period_.is_of_next(arrived_us);
-        if (owed_ == completed_ && is_over) {
+        if (link_.is_idle() && is_over) {
             end_period(now_us);
         }
-        has_snapshot_ = true;
+        period_.take_snapshot();
         submit(LiveQuery::Kind::snapshot, event, now_us);
         if (event.samples_lost != 0) {
             fail(GuardFault::input_noise, now_us);
@@ -154,6 +183,99 @@ void GuardNode::on_receiver(const ReceiverEvent& event, std::int64_t now_us) noe
         fail(GuardFault::input, now_us);
     } else if (event.kind == ReceiverEvent::Kind::fault && event.severity == Severity::drop) {
         fail(GuardFault::input_noise, now_us);
+    }
+}
+
+void GuardNode::arm(std::int64_t now_us) noexcept {
+    wire_.set_time(now_us);
+    wire_.add(LiveCall{.kind = LiveCall::Kind::arm});
+    const OperatorRefusal refusal = hindrance_of(OperatorAction::arm, now_us);
+    if (refusal == OperatorRefusal::none) {
+        permits_.forget_own_stop();
+        on({.kind = GuardEventKind::arm}, now_us);
+    } else if (guard_.phase != GuardPhase::armed) {
+        note({.kind = LiveNote::Kind::refused, .words = words_of(OperatorAction::arm, refusal)},
+             now_us);
+    }
+}
+
+void GuardNode::reset(std::int64_t now_us) noexcept {
+    wire_.set_time(now_us);
+    wire_.add(LiveCall{.kind = LiveCall::Kind::reset});
+    const OperatorRefusal refusal = hindrance_of(OperatorAction::reset, now_us);
+    if (refusal == OperatorRefusal::none) {
+        on({.kind = GuardEventKind::reset_edge}, now_us);
+    } else {
+        note({.kind = LiveNote::Kind::refused, .words = words_of(OperatorAction::reset, refusal)},
+             now_us);
+    }
+}
+
+/// The reason why that action would have no effect now; none: it would have one.
+OperatorRefusal GuardNode::hindrance_of(OperatorAction action, std::int64_t now_us) noexcept {
+    if (action == OperatorAction::arm) {
+        const bool may_move = supposes_arming_ && !permits_.has_own_stop();
+        return guard_.phase != GuardPhase::ready          ? OperatorRefusal::phase
+               : !may_move && !standstill_.stands(now_us) ? OperatorRefusal::moves
+               : permits_.waits_for_board()               ? OperatorRefusal::board
+                                                          : OperatorRefusal::none;
+    }
+    if (guard_.phase != GuardPhase::stopped) {
+        return OperatorRefusal::phase;
+    }
+    check_standstill(now_us);
+    if (!guard_.is_confirmed) {
+        return OperatorRefusal::moves;
+    }
+    Guard tried = guard_;
+    static_cast<void>(on_event(tried, {.kind = GuardEventKind::reset_edge}, live_limits(times_)));
+    return tried.phase == GuardPhase::stopped ? OperatorRefusal::cause : OperatorRefusal::none;
+}
+
+void GuardNode::on_operator(const CanFrame& frame, std::int64_t now_us) noexcept {
+    OperatorMessage message;
+    if (decode_operator_message(machine_.can, frame, message) != FrameStatus::ok) {
+        ++counters_.operator_ignored;
+        note_operator(kNoMessage, "a frame that is not an operator message", now_us);
+        return;
+    }
+    const OperatorRefusal hindrance = hindrance_of(message.action, now_us);
+    switch (hear(operator_, message, hindrance, now_us)) {
+        case OperatorHearing::ignored:
+            ++counters_.operator_ignored;
+            note_operator(kNoCounter, "an operator message whose counter did not advance by 1",
+                          now_us);
+            break;
+        case OperatorHearing::refused:
+            ++counters_.operator_refused;
+            note_operator(static_cast<std::uint32_t>(operator_.refusal),
+                          words_of(message.action, operator_.refusal), now_us);
+            break;
+        case OperatorHearing::asked:
+            break;
+        case OperatorHearing::confirmed: {
+            ++counters_.operator_acts;
+            const bool is_arm = message.action == OperatorAction::arm;
+            note({.kind = LiveNote::Kind::person,
+                  .frame_id = frame.id,
+                  .words = is_arm ? "an operator arms" : "an operator resets"},
+                 now_us);
+            if (is_arm) {
+                permits_.forget_own_stop();
+            }
+            on({.kind = is_arm ? GuardEventKind::arm : GuardEventKind::reset_edge}, now_us);
+            break;
+        }
+    }
+}
+
+/// Logs at most one line a second of each kind.
+void GuardNode::note_operator(std::uint32_t kind, const char* words, std::int64_t now_us) noexcept {
+    if (NodeLog::take(log_.operator_us[kind], now_us)) {
+        note({.kind = LiveNote::Kind::refused,
+              .frame_id = machine_.can.operator_in_id,
+              .words = words},
+             now_us);
     }
 }
 

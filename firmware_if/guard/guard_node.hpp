@@ -14,29 +14,23 @@
 #include "core/guard/time_limits.hpp"
 #include "core/machine/machine.hpp"
 #include "firmware_if/can/can_transport.hpp"
+#include "firmware_if/guard/announcements.hpp"
 #include "firmware_if/guard/black_box_recorder.hpp"
+#include "firmware_if/guard/engine_link.hpp"
 #include "firmware_if/guard/live_ids.hpp"
 #include "firmware_if/guard/live_messages.hpp"
+#include "firmware_if/guard/node_log.hpp"
 #include "firmware_if/guard/operator_desk.hpp"
 #include "firmware_if/guard/outbox.hpp"
 #include "firmware_if/guard/period_clock.hpp"
-#include "firmware_if/guard/pulse_line.hpp"
-#include "firmware_if/guard/spsc_queue.hpp"
+#include "firmware_if/guard/permit_issue.hpp"
 #include "firmware_if/guard/standstill_watch.hpp"
+#include "firmware_if/guard/stop_latch.hpp"
 #include "firmware_if/guard/sync_producer.hpp"
 #include "firmware_if/protocol/guard_frames.hpp"
-#include "firmware_if/protocol/handshake.hpp"
-#include "firmware_if/protocol/hints_frame.hpp"
-#include "firmware_if/protocol/permit_frames.hpp"
 #include "firmware_if/receiver/axis_receiver.hpp"
 
 namespace axg {
-
-struct LiveQueues {
-    SpscQueue<LiveQuery, 64> queries;
-    SpscQueue<LiveResult, 64> results;
-    SpscQueue<LiveNote, 256> notes;
-};
 
 /// Counted by the thread at the bus; others may read them when it has ended.
 struct LiveCounters {
@@ -70,17 +64,6 @@ struct WithheldPermit {
     std::uint32_t query = 0;  // not_proven: LiveQuery::number; 0: none
 };
 [[nodiscard]] const char* to_text(WithheldPermit::Why why) noexcept;
-
-/// The latch as two words in memory that outlives the process, so that storing it needs no call.
-/// Only the exact pattern of "clear" is clear. The guard stores it when a person arms, before the
-/// first permit. A stop of an armed guard therefore writes nothing: no page fault delays its frame,
-/// and the death of the process cannot lose it.
-struct LatchCell {
-    std::uint64_t word = 0, inverse = 0;
-};
-inline constexpr std::uint64_t kLatchClear = 0x6178677561726421U;
-[[nodiscard]] bool is_latched(const LatchCell& cell) noexcept;
-void set_latch(LatchCell& cell, bool is_latched) noexcept;
 
 [[nodiscard]] GuardLimits live_limits(const TimeLimits& times) noexcept;
 
@@ -117,7 +100,7 @@ class GuardNode {
     /// When to call again at the latest; before, when the wire or the engine has something.
     [[nodiscard]] std::int64_t next_due_us() const noexcept;
     /// Whether the last turn submitted a query: the caller has to wake the engine thread.
-    [[nodiscard]] bool has_submitted() const noexcept { return has_submitted_; }
+    [[nodiscard]] bool has_submitted() const noexcept { return link_.has_submitted(); }
 
     // Edges from a person, and faults from elsewhere in the process.
     void arm(std::int64_t now_us) noexcept;
@@ -131,15 +114,15 @@ class GuardNode {
     [[nodiscard]] const LiveCounters& counters() const noexcept { return counters_; }
     [[nodiscard]] const AxisReceiver& receiver() const noexcept { return receiver_; }
     /// The interface was removed: only a restart can recover it.
-    [[nodiscard]] bool is_wire_gone() const noexcept { return is_gone_; }
+    [[nodiscard]] bool is_wire_gone() const noexcept { return bus_.is_gone; }
     /// Reason of the newest stop.
-    [[nodiscard]] StopReason reason() const noexcept { return reason_; }
-    [[nodiscard]] std::uint32_t pair() const noexcept { return pair_; }  // kNoIndex: none
+    [[nodiscard]] StopReason reason() const noexcept { return stop_.cause.reason; }
+    [[nodiscard]] std::uint32_t pair() const noexcept { return stop_.cause.pair; }
     /// Query whose verdict is the stop in force; 0: there is none, or it has another cause.
     [[nodiscard]] std::uint32_t stop_query() const noexcept {
         const bool is_verdict =
             guard_.phase == GuardPhase::stopped && guard_.cause == GuardFault::verdict;
-        return is_verdict ? stop_query_ : 0;
+        return is_verdict ? stop_.cause.query : 0;
     }
     /// When the phase began.
     [[nodiscard]] std::int64_t phase_us() const noexcept { return phase_us_; }
@@ -170,13 +153,8 @@ class GuardNode {
     void take_results(std::int64_t now_us) noexcept;
     void on_result(const LiveResult& live_result, std::int64_t now_us) noexcept;
     void send_permit(const LiveResult& live_result, std::int64_t now_us) noexcept;
-    void put_stop_word(std::int64_t now_us) noexcept;
-    [[nodiscard]] bool keeps_cap() const noexcept { return machine_.guard.cap != CapPromise::none; }
     void note_held(const CycleResult& result, std::int64_t now_us) noexcept;
     [[nodiscard]] bool lacks_session(const LiveResult& live_result, std::int64_t now_us) noexcept;
-    [[nodiscard]] std::optional<std::uint32_t> newest_nonce() const noexcept;
-    void note_own_stop() noexcept;
-    [[nodiscard]] bool waits_for_board() const noexcept;
     void read_frames(std::int64_t now_us) noexcept;
     void on_arrival(const CanArrival& arrival, std::int64_t now_us) noexcept;
     void on_foreign(const CanFrame& frame, const char* words, GuardFault fault,
@@ -196,7 +174,6 @@ class GuardNode {
     [[nodiscard]] OperatorRefusal hindrance_of(OperatorAction action, std::int64_t now_us) noexcept;
     void on_operator(const CanFrame& frame, std::int64_t now_us) noexcept;
     void note_operator(std::uint32_t kind, const char* words, std::int64_t now_us) noexcept;
-    void send_status(std::int64_t now_us) noexcept;
     void check_recorder(std::int64_t now_us) noexcept;
     void submit(LiveQuery::Kind kind, const ReceiverEvent& event, std::int64_t now_us) noexcept;
     void check_engine(std::int64_t now_us) noexcept;
@@ -205,65 +182,36 @@ class GuardNode {
     void set_line(bool level, std::int64_t now_us) noexcept;
     void note(LiveNote entry, std::int64_t now_us) noexcept;
 
+    /// The wire, as the turns left it.
+    struct Bus {
+        std::int64_t last_turn_us = 0;
+        bool is_down = false, is_gone = false;
+        bool reads_more = false;  // the last turn left frames for the next
+        bool is_mute = false;     // our frames are not sent
+        bool has_begun = false;   // construction is over: stops may be sent
+    };
+
     const Machine& machine_;
     BlackBoxRecorder wire_;  // records the frames that it reads and sends
-    LiveQueues& queues_;
-    LatchCell& latch_;
     TimeLimits times_;
-    GuardLimits limits_;
     AxisReceiver receiver_;
     StandstillWatch standstill_;
     Guard guard_;
     Outbox outbox_;
-    Handshake handshake_;
     PeriodClock period_;
-    bool has_snapshot_ = false;  // in this period
-    AckLedger ledger_;           // permits that the samples of a board with caps name
-    std::uint32_t age_samples_;  // of their positions
     SyncProducer sync_;
-    LiveCounters counters_;
-
-    std::int64_t last_turn_us_;
-    std::int64_t heartbeat_us_ = 0;  // next
-    GuardHeartbeat heartbeat_ = GuardHeartbeat::silent;
-    std::uint8_t live_counter_ = 0;
-    // Numbers of queries. Not every kind has a result, and one result covers all queries before it.
-    std::uint32_t submitted_ = 0, owed_ = 0, completed_ = 0, epoch_ = 0;
-    std::int64_t waiting_since_us_ = 0;  // for the engine's next result
-    StopReason reason_ = StopReason::none;
-    std::uint32_t pair_ = kNoIndex, stop_query_ = 0;
-    std::int64_t phase_us_;
-    WithheldPermit withheld_;
-    // The logged cause of not being ready, and the earliest time of the next such line.
-    CycleResult logged_{};
-    std::int64_t next_log_us_ = 0;
-    std::uint32_t contradicted_axis_ = kNoIndex;  // at the last check
-    std::int64_t next_session_note_us_ = 0, next_period_note_us_ = 0;
-    Hints hints_;             // of the newest result
-    bool has_hints_ = false;  // that was not sent yet
+    EngineLink link_;
+    PermitIssue permits_;
+    StopOutput stop_;
+    Announcements announcements_;
     OperatorDesk operator_;
-    // Earliest time of the next line of each kind: a faulty panel or board cannot fill the log.
-    static constexpr std::int64_t kNoteUs = 1'000'000;
-    std::array<std::int64_t, kOperatorNotes> operator_note_us_{};
-    std::array<std::int64_t, kHashParts> hash_note_us_{};
-    OperatorStatus status_;                   // the last one sent
-    std::int64_t status_us_, status_due_us_;  // times of the last and of the next one
-    bool is_held_ = false;                    // the last result was held by the cap; logged
-    bool has_submitted_ = false, is_down_ = false, is_gone_ = false, reads_more_ = false;
-    bool has_reported_engine_ = false;
+    LiveCounters counters_;
+    NodeLog log_;
+    WithheldPermit withheld_;
+    std::int64_t phase_us_;
+    Bus bus_;
     bool has_passed_ = false;  // the self-test, since begin
-    bool is_mute_ = false;     // our frames are not sent
-    bool has_begun_ = false;   // construction is over: stops may be sent
-    PulseLine* line_;
-    bool line_level_ = false;
     bool supposes_arming_;
-    // The board stopped by itself under permits, and nobody armed the guard since. While its nonce
-    // is unchanged, nobody armed the board either.
-    struct SeenOwnStop {
-        bool is_on = false;
-        std::optional<std::uint32_t> nonce;
-    };
-    SeenOwnStop own_stop_;
 };
 
 }  // namespace axg

@@ -19,9 +19,16 @@ class PeriodClock {
           next_us_(now_us + period_us) {}
 
     [[nodiscard]] std::int64_t next_us() const noexcept { return next_us_; }
-    void advance() noexcept { next_us_ += period_us_; }
+    void advance() noexcept {
+        next_us_ += period_us_;
+        has_snapshot_ = false;
+    }
     /// After a gap: the missed periods are not made up for.
     void restart(std::int64_t now_us) noexcept { next_us_ = now_us + period_us_; }
+
+    /// The period has its sample.
+    void take_snapshot() noexcept { has_snapshot_ = true; }
+    [[nodiscard]] bool has_snapshot() const noexcept { return has_snapshot_; }
 
     /// A snapshot was complete at this instant.
     /// @param may_jump  no permit was issued yet, and no period was good: may move at once
@@ -50,6 +57,7 @@ class PeriodClock {
     static constexpr std::int64_t kLeanShare = 50;  // of a period, at most, with each snapshot
 
     std::int64_t period_us_, slack_us_, next_us_;
+    bool has_snapshot_ = false;
 };
 
 }  // namespace axg

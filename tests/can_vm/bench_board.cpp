@@ -12,8 +12,8 @@
 
 #include "config/machine/effective_text.hpp"
 #include "firmware_if/can/socket_can.hpp"
-#include "firmware_if/guard/live_socket.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
+#include "firmware_if/system/live_socket.hpp"
 #include "tests/support/bench_board.hpp"
 
 namespace axg::test {

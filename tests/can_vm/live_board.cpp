@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "config/machine/effective_text.hpp"
-#include "firmware_if/guard/live_socket.hpp"
+#include "firmware_if/system/live_socket.hpp"
 #include "hil_replay/board/approach_driver.hpp"
 #include "hil_replay/board/socket_clock.hpp"
 #include "hil_replay/drive/bus_drive.hpp"

@@ -9,7 +9,7 @@
 #include <array>
 #include <set>
 
-#include "firmware_if/guard/gpio_line.hpp"
+#include "firmware_if/system/gpio_line.hpp"
 #include "tests/support/live_world.hpp"
 #include "tests/support/permit_reader.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware_if/guard/live_socket.hpp"
+#include "firmware_if/system/live_socket.hpp"
 
 #include <algorithm>
 

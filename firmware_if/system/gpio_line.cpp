@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware_if/guard/gpio_line.hpp"
+#include "firmware_if/system/gpio_line.hpp"
 
 #include <fcntl.h>
 #include <linux/gpio.h>
