@@ -242,7 +242,7 @@ void add_guard(Lines& lines, const GuardRules& guard) {
 /// Without a pinned cycle the program chooses stages and lists: they are no part of the machine.
 void add_cycle(Lines& lines, const CycleRules& cycle) {
     lines.add("cycle.is_pinned", cycle.is_pinned ? 1U : 0U);
-    lines.add("cycle.depth_max", cycle.depth_max);
+    lines.add("cycle.depth_max", kStageDepthMax);
     lines.add("cycle.queries", cycle.queries);
     if (!cycle.is_pinned) {
         return;

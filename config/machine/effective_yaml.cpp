@@ -280,7 +280,6 @@ void fill_guard(YamlNode& map, const GuardRules& guard) {
     fill(map, "travel_proofs", value_of(guard.travel_proofs));
     fill(map, "overrun_mm", value_of(guard.overrun_mm));
     fill(map, "overrun_deg", value_of(guard.overrun_rad * (180 / kPi)));
-    fill_none(map, {"rounds", "questions"});  // older names: cycle
     fill(map, "speed_cap", value_of(guard.speed_cap));
     fill(map, "cap_lead_ms", value_of(guard.cap_lead_s * 1e3));
     fill(map, "cap", value_of(to_text(guard.cap)));

@@ -124,15 +124,6 @@ void read_free_jerk(MapReader& reader, Machine& machine) {
     }
 }
 
-/// Reads the older keys of the section `cycle`, for one release: they are in `guard`.
-void read_older_names(MapReader& reader, CycleRules& out) {
-    std::uint32_t rounds = 0;
-    if (reader.whole("rounds", Need::optional, {1, 32}, rounds)) {
-        out.depth_max = rounds - 1;
-    }
-    reader.whole("questions", Need::optional, {1, 65'536}, out.queries);
-}
-
 }  // namespace
 
 void read_guard(MapReader& top, MachineDraft& draft) {
@@ -143,12 +134,10 @@ void read_guard(MapReader& top, MachineDraft& draft) {
     }
     MapReader reader{*section,
                      "guard",
-                     {"promise",    "board_reaction_ms", "latch_jitter_us", "free_jerk",
-                      "obeyed_by",  "stop_reversal",     "limits_broken",   "travel_enforced",
-                      "rounds",     "questions",         "speed_cap",       "cap_lead_ms",
-                      "slow_mm",    "warn_mm",           "level_band_mm",   "level_hold_samples",
-                      "single_jog", "travel_proofs",     "overrun_mm",      "overrun_deg",
-                      "cap"},
+                     {"promise", "board_reaction_ms", "latch_jitter_us", "free_jerk", "obeyed_by",
+                      "stop_reversal", "limits_broken", "travel_enforced", "speed_cap",
+                      "cap_lead_ms", "slow_mm", "warn_mm", "level_band_mm", "level_hold_samples",
+                      "single_jog", "travel_proofs", "overrun_mm", "overrun_deg", "cap"},
                      draft.faults};
     read_promise(reader, draft.machine);
     GuardRules& out = draft.machine.guard;
@@ -186,7 +175,6 @@ void read_guard(MapReader& top, MachineDraft& draft) {
     if (reader.number("overrun_deg", Need::optional, {0, 10}, value)) {
         out.overrun_rad = value * (kPi / 180);
     }
-    read_older_names(reader, draft.machine.cycle);
     reader.boolean("speed_cap", Need::optional, out.speed_cap);
     if (reader.number("cap_lead_ms", Need::optional, {0, 1000}, value)) {
         out.cap_lead_s = value / 1e3;

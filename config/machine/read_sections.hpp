@@ -21,7 +21,7 @@ void read_guard(MapReader& top, MachineDraft& draft);  // after `can`: look-ahea
 void read_pairs(MapReader& top, MachineDraft& draft);
 void read_output_line(MapReader& top, MachineDraft& draft);
 void read_capacities(MapReader& top, MachineDraft& draft);
-void read_cycle(MapReader& top, MachineDraft& draft);  // after `guard`: its older keys
+void read_cycle(MapReader& top, MachineDraft& draft);
 
 // Parts that bodies and tools share.
 void read_mesh(const YamlNode& node, const std::string& path, FaultList& faults, MeshSource& out);

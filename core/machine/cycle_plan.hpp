@@ -15,9 +15,7 @@ namespace axg {
 [[nodiscard]] constexpr CyclePlan default_plan(const Machine& machine,
                                                std::uint32_t tasks) noexcept {
     const CycleRules& rules = machine.cycle;
-    CyclePlan plan = plan_of(rules.stages, tasks, rules.queries, rules.lists);
-    plan.depth_max = rules.depth_max;
-    return plan;
+    return plan_of(rules.stages, tasks, rules.queries, rules.lists);
 }
 
 /// The plan in force: all parts of a guard use this one.

@@ -233,7 +233,6 @@ struct CycleRules {
     // (docs/measurements/bounded-cycle.md).
     std::uint32_t stages = 3;
     std::uint32_t queries = 512;  // of the last stage
-    std::uint32_t depth_max = kStageDepthMax;
     // No rechecks: those of box queries never decided a sample.
     WorkLists lists{.node_pairs = 192,
                     .leaf_pairs = 240,

@@ -67,14 +67,12 @@ CyclePlan plan_at(const Machine& machine, std::uint32_t tasks, std::uint32_t ste
         return static_cast<std::uint32_t>(std::uint64_t{list} * parts / 48);
     };
     const CycleRules& rules = machine.cycle;
-    CyclePlan plan = plan_of(rules.stages, tasks, rules.queries,
-                             {.node_pairs = of(rules.lists.node_pairs, part.nodes),
-                              .leaf_pairs = of(rules.lists.leaf_pairs, part.leaves),
-                              .box_rows = of(rules.lists.box_rows, part.rows),
-                              .triangle_pairs = of(rules.lists.triangle_pairs, part.triangles),
-                              .rechecks = of(rules.lists.rechecks, part.triangles)});
-    plan.depth_max = rules.depth_max;
-    return plan;
+    return plan_of(rules.stages, tasks, rules.queries,
+                   {.node_pairs = of(rules.lists.node_pairs, part.nodes),
+                    .leaf_pairs = of(rules.lists.leaf_pairs, part.leaves),
+                    .box_rows = of(rules.lists.box_rows, part.rows),
+                    .triangle_pairs = of(rules.lists.triangle_pairs, part.triangles),
+                    .rechecks = of(rules.lists.rechecks, part.triangles)});
 }
 
 std::optional<ChosenPlan> judge_plan(const LoadedMachine& loaded, const CyclePlan& plan,

@@ -1,29 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hil_replay/commands/axguard.hpp"
 
-#include <algorithm>
-#include <array>
-#include <string_view>
 #include <utility>
 
 #include "firmware_if/cli/command_line.hpp"
 #include "hil_replay/commands/commands.hpp"
-#include "hil_replay/commands/start_lab.hpp"
 #include "hil_replay/commands/watch_command.hpp"
 
 namespace axg {
-namespace {
-
-// For one release these commands start axguard-lab.
-constexpr std::array<std::string_view, 4> kLabCommands = {"query", "accuracy", "bench", "chart"};
-
-}  // namespace
 
 int run_axguard(std::vector<std::string> words, const ReplayObserver& observer) {
-    if (!words.empty() &&
-        std::find(kLabCommands.begin(), kLabCommands.end(), words.front()) != kLabCommands.end()) {
-        return start_lab(words);
-    }
     CommandLine line({.name = "axguard",
                       .purpose = "axguard: collision guard for five-axis machines; see axguard-lab "
                                  "for queries, benchmarks and charts",

@@ -141,7 +141,7 @@ int run_scene_benchmark(const SceneBenchmarkOptions& options) {
     if (measured.per_cycle == 0 || queries.size() < measured.per_cycle) {
         fmt::print(stderr,
                    "{}: too few queries (found {} poses times pairs, expected at least {} for a "
-                   "cycle). State fewer with --questions.\n",
+                   "cycle). State fewer with --queries.\n",
                    options.folder, queries.size(), measured.per_cycle);
         return kExitInput;
     }

@@ -99,7 +99,7 @@ int benchmark(const BenchOptions& options) {
 }
 
 void add_worst_case_options(const Command& command, BenchOptions& options) {
-    command.add_flag("--worst-case,--fill", options.worst_case,
+    command.add_flag("--worst-case", options.worst_case,
                      "measure the worst case, every list full: the longest GPU batch, or with "
                      "--engine cpu the longest cycle of a plan");
     command.add_input("--machine", options.machine,
@@ -155,7 +155,7 @@ void add_bench(CommandLine& line) {
     command.add_option("--within", options->scene.within_mm, "largest clearance to measure, mm")
         .between(1e-6, kMarginMmMax)
         .shows_default();
-    command.add_option("--questions", options->scene.queries,
+    command.add_option("--queries", options->scene.queries,
                        "queries per cycle [default: all pairs of a pose]");
     const Option cycles =
         command

@@ -137,8 +137,6 @@ guard:
   free_jerk: limited
   obeyed_by: drives
   travel_enforced: true
-  rounds: 6
-  questions: 400
   speed_cap: true
   cap_lead_ms: 35
   cap: none
@@ -377,8 +375,6 @@ TEST_F(Mutator, EveryDroppedKeyIsRefusedUnlessItIsOptional) {
                                             "stages",
                                             "queries",
                                             "lists",
-                                            "rounds",
-                                            "questions",
                                             "speed_cap",
                                             "cap_lead_ms",
                                             "cap",

@@ -84,28 +84,5 @@ TEST(MachineCycle, WhatIsRefusedIsNamed) {
     }
 }
 
-// For one release, and where the plan says nothing else.
-TEST(MachineCycle, OlderKeysOfGuardBoundDepthAndQueries) {
-    const auto with_guard = [](const std::string& keys, const std::string& section) {
-        Machine machine;
-        const std::string text =
-            with(kSmallMachine, "free_jerk: any", "free_jerk: any, " + keys) + section;
-        EXPECT_TRUE(parse_machine(text, "m", machine).empty()) << keys;
-        return machine.cycle;
-    };
-    EXPECT_EQ(with_guard("rounds: 1", "").depth_max, 0U);
-    EXPECT_EQ(with_guard("rounds: 32", "").depth_max, 31U);
-    EXPECT_EQ(with_guard("questions: 160", "").queries, 160U);
-    EXPECT_FALSE(with_guard("questions: 160", "").is_pinned);
-    EXPECT_EQ(with_guard("questions: 160", "cycle: {stages: 3}\n").queries, 160U);
-    EXPECT_EQ(with_guard("questions: 160", "cycle: {queries: 200}\n").queries, 200U);
-    for (const char* bad : {"rounds: 0", "rounds: 33", "questions: 0", "questions: 65537"}) {
-        Machine machine;
-        const std::string text =
-            with(kSmallMachine, "free_jerk: any", std::string("free_jerk: any, ") + bad);
-        EXPECT_FALSE(parse_machine(text, "m", machine).empty()) << bad;
-    }
-}
-
 }  // namespace
 }  // namespace axg::test
