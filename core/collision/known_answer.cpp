@@ -15,7 +15,7 @@ bool is_near_right(const QueryResult& near) noexcept {
 
 Mesh known_answer_mesh() {
     const Vec3f o{0, 0, 0}, x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
-    return {"canary", {{o, y, x}, {o, x, z}, {o, z, y}, {x, y, z}}};
+    return {"known answer", {{o, y, x}, {o, x, z}, {o, z, y}, {x, y, z}}};
 }
 
 Query known_answer_query(std::uint32_t mesh, bool is_near) noexcept {

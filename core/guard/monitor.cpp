@@ -142,11 +142,11 @@ const char* to_text(StopReason reason) noexcept {
         case StopReason::engine:
             return "engine";
         case StopReason::known_answer:
-            return "canary";
+            return "known_answer";
         case StopReason::tool:
             return "tool";
         case StopReason::snapshot:
-            return "picture";
+            return "snapshot";
         case StopReason::left_path:
             return "left_path";
         case StopReason::input:

@@ -161,7 +161,7 @@ AdmissionLine judge_memory(const AdmissionFigures& figures) {
 }  // namespace
 
 const char* to_text(AdmissionCheck check) noexcept {
-    constexpr std::array kNames{"system", "latency", "engine", "cycle", "canary", "memory"};
+    constexpr std::array kNames{"system", "latency", "engine", "cycle", "known_answer", "memory"};
     static_assert(kNames.size() == kAdmissionCount);
     return kNames[static_cast<std::size_t>(check)];
 }

@@ -31,7 +31,7 @@ nlohmann::ordered_json describe(const AdmissionFigures& figures) {
                          {"proven_count", figures.cycles->proven_count},
                          {"proven_us", figures.cycles->proven_us},
                          {"longest_us", figures.cycles->longest_us},
-                         {"questions_max", figures.cycles->queries_max},
+                         {"queries_max", figures.cycles->queries_max},
                          {"fill_us", figures.cycles->worst_case_us},
                          {"plan", figures.cycles->plan}};
     }
@@ -133,7 +133,7 @@ std::string describe_run(const RunSubject& subject, const LiveEnd& end) {
                                   {"phase", to_text(end.guard.phase)},
                                   {"cause", to_text(end.guard.cause)},
                                   {"reason", to_text(end.reason)},
-                                  {"pictures", counters.snapshots},
+                                  {"snapshots", counters.snapshots},
                                   {"permits", counters.permits},
                                   {"permits_slow", counters.slow},
                                   {"stop_frames", counters.stops},

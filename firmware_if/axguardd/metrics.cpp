@@ -44,7 +44,7 @@ struct Counter {
 void put_counters(Page& page, const LiveView& view, std::string_view bus) {
     const LiveCounters& counters = view.counters;
     for (const Counter& counter : std::initializer_list<Counter>{
-             {"pictures_total", "Complete samples of all axes.", counters.snapshots},
+             {"snapshots_total", "Complete samples of all axes.", counters.snapshots},
              {"permits_total", "Permits sent.", counters.permits},
              {"stop_frames_total", "Stop frames sent.", counters.stops},
              {"answers_late_total", "Verdicts after their deadline.", counters.late},

@@ -135,7 +135,7 @@ void put_state(Line& line, const LiveView& view, const GuardWhy& why, const Mach
 
 void put_counters(Line& line, const LiveView& view) {
     const LiveCounters& counters = view.counters;
-    line.put(",\"pictures\":{},\"permits\":{},\"permits_slow\":{},\"stop_frames\":{},\"late\":{}",
+    line.put(",\"snapshots\":{},\"permits\":{},\"permits_slow\":{},\"stop_frames\":{},\"late\":{}",
              counters.snapshots, counters.permits, counters.slow, counters.stops, counters.late);
     line.put(",\"refused\":{},\"send_faults\":{},\"samples_lost\":{},\"frames_dropped\":{}",
              counters.refused, counters.send_faults, view.input.samples_lost, view.frames_dropped);
@@ -274,7 +274,7 @@ constexpr std::array<StatusKey, 28> kViewKeys{{{"age_ms", is_count},
                                                {"sample_us", is_count},
                                                {"period_us", is_number_or_null},
                                                {"hashes", is_hashes},
-                                               {"pictures", is_count},
+                                               {"snapshots", is_count},
                                                {"permits", is_count},
                                                {"permits_slow", is_count},
                                                {"stop_frames", is_count},
@@ -432,7 +432,7 @@ std::string words_of_view(const Json& json) {
     }
     out +=
         fmt::format("{} samples, {} permits, {} late, {} lost; {} guard frames failed\n",
-                    count_at(json, "pictures"), count_at(json, "permits"), count_at(json, "late"),
+                    count_at(json, "snapshots"), count_at(json, "permits"), count_at(json, "late"),
                     count_at(json, "samples_lost"), count_at(json, "send_faults"));
     return out;
 }

@@ -49,7 +49,7 @@ Json describe_ids(const std::map<IdKey, IdSurvey>& ids) {
 Json describe_axes(const Machine& machine, const SnapshotSurvey& survey) {
     Json out;
     out["name"] = machine.name;
-    out["pictures"] = survey.snapshots;
+    out["snapshots"] = survey.snapshots;
     out["samples_lost"] = survey.samples_lost;
     out["tools"] = survey.tools;
     auto& axes = out["axes"] = Json::array();
@@ -203,7 +203,7 @@ std::string describe_black_box(const BlackBoxReport& report) {
     if (header.is_stoppable) {
         out["plan"] = plan_json(header.plan);
     }
-    out["pictures"] = describe(result.snapshots);
+    out["snapshots"] = describe(result.snapshots);
     out["verdicts"] = describe(result.verdicts);
     out["recorded"] = describe_json(result.recorded, machine);
     out["replayed"] = describe_json(result.replayed, machine);

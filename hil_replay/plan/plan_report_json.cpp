@@ -22,7 +22,7 @@ Json describe(const ChosenPlan& chosen) {
     Json stages = Json::array();
     for (std::uint32_t i = 0; i < chosen.plan.stages; ++i) {
         const WorkLists& lists = chosen.plan.lists[i];
-        stages.push_back({{"questions", chosen.plan.queries[i]},
+        stages.push_back({{"queries", chosen.plan.queries[i]},
                           {"node_pairs", lists.node_pairs},
                           {"leaf_pairs", lists.leaf_pairs},
                           {"box_rows", lists.box_rows},
@@ -45,7 +45,7 @@ Json describe(const ModelCandidate& model) {
             {"rest_us", describe(m.rest)},
             {"trace_us", describe(m.trace)},
             {"longest_us", m.longest_us},
-            {"questions_most", m.work.queries},
+            {"queries_most", m.work.queries},
             {"node_pairs_most", m.work.node_pairs},
             {"triangle_pairs_most", m.work.triangle_pairs},
             {"rechecks_most", m.work.rechecks},

@@ -15,7 +15,7 @@ Json plan_json(const CyclePlan& plan) {
     auto stages = Json::array();
     for (std::uint32_t stage = 0; stage < plan.stages; ++stage) {
         const WorkLists& lists = plan.lists[stage];
-        stages.push_back({{"questions", plan.queries[stage]},
+        stages.push_back({{"queries", plan.queries[stage]},
                           {"node_pairs", lists.node_pairs},
                           {"leaf_pairs", lists.leaf_pairs},
                           {"box_rows", lists.box_rows},

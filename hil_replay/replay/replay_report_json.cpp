@@ -101,7 +101,7 @@ Json proofs_json(const ReplayReport& report) {
     return {
         {"horizon_ms",
          free_seconds(report.loaded.machine, report.loaded.machine.can.permit_samples.least) * 1e3},
-        {"questions", counts(proofs.queries, proofs.queries_most)},
+        {"queries", counts(proofs.queries, proofs.queries_most)},
         {"stages", counts(proofs.stages, proofs.stages_most)},
         {"plan", plan_json(report.run.plan())},
         {"withheld", proofs.withheld}};
@@ -111,7 +111,7 @@ Json clearance_levels_json(const ReplayReport& report) {
     const ClearanceLevelStatistics& clearance_levels = report.run.clearance_levels();
     return {{"slow", clearance_levels.slow},
             {"warn", clearance_levels.warn},
-            {"questions",
+            {"queries",
              {{"median", clearance_levels.queries.at_share(0.5)},
               {"p99", clearance_levels.queries.at_share(0.99)},
               {"max", clearance_levels.queries_most}}}};

@@ -175,7 +175,7 @@ std::optional<GuardLine> read_guard_line(std::string_view line) {
     out.age_ms = json.at("age_ms").get<std::uint64_t>();
     out.phase_ms = json.at("phase_ms").get<std::uint64_t>();
     out.permits = json.at("permits").get<std::uint64_t>();
-    out.samples = json.at("pictures").get<std::uint64_t>();
+    out.samples = json.at("snapshots").get<std::uint64_t>();
     out.late = json.at("late").get<std::uint64_t>();
     out.lost = json.at("samples_lost").get<std::uint64_t>();
     return out;

@@ -71,7 +71,7 @@ class FakeGuard:
 
 
 def line_of(configuration):
-    counters = ("pictures", "permits", "permits_slow", "stop_frames", "late", "refused",
+    counters = ("snapshots", "permits", "permits_slow", "stop_frames", "late", "refused",
                 "send_faults", "samples_lost", "frames_dropped", "operator_acts",
                 "operator_refused", "operator_ignored")
     return {"axguardd": "0.1.0", "bus": "can0", "machine": "paper-trunnion",

@@ -45,7 +45,7 @@ def waived_by_name():
     guard.check_busy()
     found = verdict()
     expect(found["admitted"] and "system" not in failed(), found)
-    expect("canary" not in failed() and "memory" not in failed(), found)
+    expect("known_answer" not in failed() and "memory" not in failed(), found)
     expect(found["figures"]["cycles"]["count"] == 128, found)
     expect(found["figures"]["wake_ups"]["count"] == 10, found)
     metrics = METRICS.read_text()

@@ -45,7 +45,7 @@ def judge_black_box(report, reason, why):
     with open("/run/box.json") as file:
         box = json.load(file)
     expect(box["is_reproduced"] and box["recorded"]["reason"] == reason, box)
-    expect(box["verdicts"]["different"] == 0 and box["pictures"]["different"] == 0, box)
+    expect(box["verdicts"]["different"] == 0 and box["snapshots"]["different"] == 0, box)
     # From its start to the stop and after it, byte for byte in the same order.
     expect(box["sent"] and box["sent"]["different"] == 0, box)
     expect(box["sent"]["same"] == box["frames_sent"] + box["frames_refused"] > 500, box)
@@ -128,7 +128,7 @@ def stop_at_the_collision(format_, mode):
                   for frame in dumped)
     expect(permits == len(plain), "candump saw other permits")
     keep(dump)
-    print(f"{len(plain)} permits of {report['pictures']} pictures, {report['late']} late,"
+    print(f"{len(plain)} permits of {report['snapshots']} snapshots, {report['late']} late,"
           f" {report['refused']} refused, {ids.count(STOP)} stops", flush=True)
 
 

@@ -74,8 +74,8 @@ def seen(axguard, machine, path):
 
 def faults_of(sent):
     faults = []
-    if sent["pictures"] != SAMPLES or sent["samples_lost"] or sent["receiver_faults"]:
-        faults.append(f"{sent['pictures']} of {SAMPLES} samples: {sent['receiver_faults']}")
+    if sent["snapshots"] != SAMPLES or sent["samples_lost"] or sent["receiver_faults"]:
+        faults.append(f"{sent['snapshots']} of {SAMPLES} samples: {sent['receiver_faults']}")
     for axis in sent["axes"]:
         values = [position(number)[axis["name"]] for number in range(SAMPLES)]
         for key, wanted in (("least", min(values)), ("most", max(values)), ("last", values[-1])):
@@ -103,9 +103,9 @@ def main():
         sent = seen(axguard, folder / "m.yaml", folder / "sent.log")
         other = seen(axguard, folder / "m.yaml", folder / "other.log")
     faults = faults_of(sent)
-    if other["pictures"] != 0:
-        faults.append(f"{other['pictures']} samples of frames under other identifiers")
-    print("\n".join(faults) if faults else f"{sent['pictures']} samples, 5 axes agree")
+    if other["snapshots"] != 0:
+        faults.append(f"{other['snapshots']} samples of frames under other identifiers")
+    print("\n".join(faults) if faults else f"{sent['snapshots']} samples, 5 axes agree")
     return 1 if faults else 0
 
 

@@ -204,7 +204,7 @@ def scripts_of_the_nonce():
     one.step("latch", at=100_499, sync=2, lap=0, want=1)
     one.permit(1, 100_700, want="refused", why="echo")
 
-    one = script("the wrong canary", "an engine that answers its known question wrongly")
+    one = script("the wrong known answer", "an engine that answers its known question wrongly")
     one.begin().latch(4)
     one.permit(4, Script.instant(4) + 400, answer=0xC5A2, want="refused", why="answer")
     one.permit(4, Script.instant(4) + 500, live=5)

@@ -39,7 +39,7 @@ Json json_of(const WorkLists& lists) {
 
 Json describe_call(const WorstCaseCall& call) {
     const BatchCapacities& batch = call.capacities.batch;
-    Json out{{"times", call.times}, {"questions", call.queries}, {"is_stage", call.is_stage}};
+    Json out{{"times", call.times}, {"queries", call.queries}, {"is_stage", call.is_stage}};
     out["lists"] = {{call.is_stage ? "node_pairs" : "level_pairs", batch.level_pairs},
                     {"leaf_pairs", batch.leaf_pairs},
                     {"box_rows", batch.box_rows},
@@ -128,7 +128,7 @@ std::string describe_scene(const SceneMeasurement& m, const std::string& kind) {
     const CyclePercentiles us = percentiles_of(m.cycle_us);
     Json document{{"engine", m.device ? "cuda" : "cpu"},
                   {"ask", kind},
-                  {"questions", m.per_cycle},
+                  {"queries", m.per_cycle},
                   {"cycles", m.cycle_us.size()}};
     document["cycle_us"] = json_of(us);
     document["far"] = m.far;
@@ -155,7 +155,7 @@ std::string describe_scene(const SceneMeasurement& m, const std::string& kind) {
 std::string describe_poses(const PoseMeasurement& m, std::uint32_t passes) {
     return text_of(Json{{"bench", "pose"},
                         {"tasks", m.tasks},
-                        {"questions", m.queries},
+                        {"queries", m.queries},
                         {"batches", m.batches},
                         {"passes", passes},
                         {"us", m.us}});

@@ -59,7 +59,7 @@ TEST_F(Admit, TheVerdictIsStoredWithWhoseItIs) {
     EXPECT_FALSE(verdict["fit"].get<bool>());
     EXPECT_FALSE(verdict["admitted"].get<bool>());
     EXPECT_EQ(check(verdict, "system")["found"], "nocan9: no such interface");
-    EXPECT_TRUE(check(verdict, "canary")["passed"].get<bool>());
+    EXPECT_TRUE(check(verdict, "known_answer")["passed"].get<bool>());
     EXPECT_EQ(verdict["checks"].size(), 6U);
     EXPECT_EQ(verdict["machine"], "paper-trunnion");
     EXPECT_EQ(verdict["configuration_sha256"].get<std::string>().size(), 64U);
@@ -71,7 +71,7 @@ TEST_F(Admit, TheVerdictIsStoredWithWhoseItIs) {
     EXPECT_EQ(cycles["count"], 128);
     EXPECT_GT(cycles["proven_count"], 10) << "of the positions of this machine many are clear";
     EXPECT_LT(cycles["proven_count"], 120) << "and many are not: those take the whole budget";
-    EXPECT_GT(cycles["questions_max"], 400) << "of 512: no cycle would be much longer";
+    EXPECT_GT(cycles["queries_max"], 400) << "of 512: no cycle would be much longer";
     EXPECT_GE(cycles["longest_us"], cycles["proven_us"]);
     EXPECT_GT(cycles["fill_us"], 0) << "the CPU's longest cycle is constructed";
     EXPECT_NE(cycles["plan"].get<std::string>().find(" node pairs"), std::string::npos);
@@ -81,7 +81,7 @@ TEST_F(Admit, TheVerdictIsStoredWithWhoseItIs) {
 TEST_F(Admit, InContactModeTheSampledPosesAreQueried) {
     EXPECT_EQ(admit({"--mode", "contact"}), kExitUnfit);
     const test::Json cycles = read(verdict_path())["figures"]["cycles"];
-    EXPECT_EQ(cycles["questions_max"], 0);
+    EXPECT_EQ(cycles["queries_max"], 0);
     EXPECT_GT(cycles["proven_count"], 10);
     EXPECT_GT(cycles["proven_us"], 0);
     EXPECT_EQ(cycles["plan"], "") << "no box is proven";
@@ -126,7 +126,7 @@ TEST_F(Admit, AFolderThatCannotBeWrittenToIsNoVerdict) {
 TEST_F(Admit, AWrongResultIsWaivedByNobody) {
     const std::vector<std::string> run{"run", test::kPaperMachine, "--bus", "nocan9",
                                        "--admit-unfit"};
-    for (const char* const name : {"canary", "everything", ""}) {
+    for (const char* const name : {"known_answer", "everything", ""}) {
         std::vector<std::string> words = run;
         words.emplace_back(name);
         EXPECT_EQ(run_axguardd(words), kExitUsage) << name;

@@ -61,11 +61,11 @@ TEST_F(StoppableCommand, TheCleanProgramKeepsItsPermit) {
     EXPECT_GE(all["permits"].get<long>() + 3 + 30 + GuardLimits{}.snapshots_min,
               all["samples"].get<long>());
     EXPECT_NEAR(all["proofs"]["horizon_ms"].get<double>(), 5.05, 1e-9);
-    EXPECT_GE(all["proofs"]["questions"]["median"].get<long>(), 8) << "one a pair at least";
-    EXPECT_LE(all["proofs"]["questions"]["p99"], all["proofs"]["questions"]["max"]);
+    EXPECT_GE(all["proofs"]["queries"]["median"].get<long>(), 8) << "one a pair at least";
+    EXPECT_LE(all["proofs"]["queries"]["p99"], all["proofs"]["queries"]["max"]);
     EXPECT_LE(all["proofs"]["stages"]["max"].get<long>(), 3);
     EXPECT_EQ(all["proofs"]["plan"]["stages"].size(), 3U);
-    EXPECT_EQ(all["proofs"]["plan"]["stages"][2]["questions"], 512);
+    EXPECT_EQ(all["proofs"]["plan"]["stages"][2]["queries"], 512);
     EXPECT_NE(shop->out.find("plan: 3 stages, 544 queries after the first; lists: 192 node pairs"),
               std::string::npos)
         << shop->out;
@@ -199,7 +199,7 @@ TEST_F(StoppableCommand, ClearanceLevelsAreReportedAndChangeNoPermit) {
         EXPECT_GT(slow, 0);
         EXPECT_GT(warn, 0);
         EXPECT_GE(levels["pairs"]["cutter-c"]["slow"].get<long>(), 1);
-        EXPECT_LE(levels["levels"]["questions"]["max"].get<long>(), 512);
+        EXPECT_LE(levels["levels"]["queries"]["max"].get<long>(), 512);
         std::istringstream lines(test::content_of(shop->file("l.csv")));
         std::string line;
         std::getline(lines, line);

@@ -89,7 +89,7 @@ TEST_F(CheckPlan, ModelsGetCoarserAndTheCoarsestThatLosesNothingIsChosen) {
         EXPECT_EQ(model.at("contact_us").at("cycles"), 60);
         EXPECT_EQ(model.at("rest_us").at("cycles"), 60);
         EXPECT_GT(model.at("rest_us").at("p50"), 0);
-        EXPECT_GT(model.at("questions_most"), 0);
+        EXPECT_GT(model.at("queries_most"), 0);
         EXPECT_EQ(model.at("over_capacity"), 0);
         if (i != 0) {
             EXPECT_LT(model.at("triangles"), models.at(i - 1).at("triangles"));

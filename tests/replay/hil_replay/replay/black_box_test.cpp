@@ -256,8 +256,8 @@ TEST_F(BlackBoxReplayTest, AStopIsFoundAgainAtTheSameSampleForTheSameReasonAndPa
     EXPECT_GT(all["verdicts"]["same"].get<long>(), 100);
     EXPECT_EQ(all["verdicts"]["different"], 0);
     EXPECT_EQ(all["verdicts"]["run_in"], 0);
-    EXPECT_EQ(all["pictures"]["different"], 0);
-    EXPECT_EQ(all["pictures"]["run_in"], 0);
+    EXPECT_EQ(all["snapshots"]["different"], 0);
+    EXPECT_EQ(all["snapshots"]["run_in"], 0);
     EXPECT_EQ(all["records_lost"], 0);
     expect_same_frames(all);
     // The wire of this world takes 150 us a frame, its engine as long, and a turn is 50 us.
@@ -342,8 +342,8 @@ TEST_F(BlackBoxReplayTest, SnapshotsThatTheEngineSkippedAreSkippedAgain) {
     const bool is_verdict = world->guard->guard().cause == GuardFault::verdict;
     const auto all = replay(is_verdict ? kExitCollision : kExitDeadline);
     EXPECT_EQ(all["verdicts"]["different"], 0) << all.dump(1);
-    EXPECT_EQ(all["pictures"]["different"], 0);
-    EXPECT_LT(all["verdicts"]["same"].get<long>() + 1, all["pictures"]["same"].get<long>());
+    EXPECT_EQ(all["snapshots"]["different"], 0);
+    EXPECT_LT(all["verdicts"]["same"].get<long>() + 1, all["snapshots"]["same"].get<long>());
     expect_same_frames(all);
 }
 
@@ -438,7 +438,7 @@ TEST_F(BlackBoxReplayTest, AResetIsPlayedToo) {
     const auto all = replay(kExitCollision);
     EXPECT_TRUE(all["is_reproduced"].get<bool>()) << all.dump(1);
     EXPECT_EQ(all["verdicts"]["different"], 0);
-    EXPECT_EQ(all["pictures"]["different"], 0);
+    EXPECT_EQ(all["snapshots"]["different"], 0);
     expect_same_frames(all);
 }
 
@@ -518,7 +518,7 @@ TEST_F(BlackBoxReplayTest, WhatWasWithheldBeforeArmingIsWithheldAgain) {
     const auto all = replay(kExitCollision);
     EXPECT_TRUE(all["is_reproduced"].get<bool>()) << all.dump(1);
     EXPECT_EQ(all["verdicts"]["different"], 0);
-    EXPECT_EQ(all["pictures"]["different"], 0);
+    EXPECT_EQ(all["snapshots"]["different"], 0);
     EXPECT_NE(shop->out.find("withheld: predicted: cutter-c\n"), std::string::npos) << shop->out;
     EXPECT_TRUE(unstopped["recorded"].is_null()) << unstopped.dump(1);
     EXPECT_EQ(unstopped["why"]["cause"], "not_known") << unstopped.dump(1);

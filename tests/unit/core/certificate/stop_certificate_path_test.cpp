@@ -129,7 +129,7 @@ TEST_F(StopCertificatePath, WithoutThePathThereIsNoPermitAndNoStop) {
         EXPECT_EQ(result.reason, StopReason::predicted);
         EXPECT_EQ(certificate->work().queries, 0U);
         EXPECT_EQ(result.known_answer_signature, kKnownAnswerSignature)
-            << "the canary is asked all the same";
+            << "the known-answer test runs all the same";
     }
 }
 

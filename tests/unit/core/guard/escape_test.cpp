@@ -167,7 +167,7 @@ TEST_F(EscapeTest, AnEngineThatIsBrokenShowsNoWay) {
     says_yes = true;
     const Escapes out = find(0, -59.7);
     EXPECT_TRUE(out.is_clear);
-    EXPECT_EQ(out.count, 0U) << "the near canary finds it out";
+    EXPECT_EQ(out.count, 0U) << "the near known-answer test finds it out";
 }
 
 TEST_F(EscapeTest, ASnapshotThatCanNotBeQueriedShowsNoWay) {

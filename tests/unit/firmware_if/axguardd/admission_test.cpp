@@ -73,7 +73,7 @@ TEST(Admission, WhatWasNotMeasuredHasFailed) {
     AdmissionFigures nothing;
     nothing.times = limits(500);
     EXPECT_EQ(failed(judge_admission(nothing)),
-              (Names{"system", "latency", "engine", "cycle", "canary", "memory"}));
+              (Names{"system", "latency", "engine", "cycle", "known_answer", "memory"}));
     EXPECT_EQ(failed_with([](auto& f) { f.system.reset(); }), Names{"system"});
     EXPECT_EQ(failed_with([](auto& f) { f.system->clear(); }), Names{"system"});
     EXPECT_EQ(failed_with([](auto& f) { f.wake_ups.reset(); }), (Names{"latency", "cycle"}));
@@ -81,7 +81,7 @@ TEST(Admission, WhatWasNotMeasuredHasFailed) {
     EXPECT_EQ(failed_with([](auto& f) { f.cycles.reset(); }), (Names{"engine", "cycle"}));
     EXPECT_EQ(failed_with([](auto& f) { f.cycles->proven_count = 0; }), (Names{"engine", "cycle"}))
         << "a machine that is never proven says nothing about how long a proof takes";
-    EXPECT_EQ(failed_with([](auto& f) { f.passes_known_answer.reset(); }), Names{"canary"});
+    EXPECT_EQ(failed_with([](auto& f) { f.passes_known_answer.reset(); }), Names{"known_answer"});
     EXPECT_EQ(failed_with([](auto& f) { f.memory.reset(); }), Names{"memory"});
     EXPECT_EQ(failed_with([](auto& f) { f.memory->available_bytes = 0; }), Names{"memory"});
     const double not_a_number = std::numeric_limits<double>::quiet_NaN();
@@ -128,7 +128,7 @@ TEST(Admission, EachBoundFromBothSides) {
     EXPECT_EQ(failed_with([](auto& f) { f.cycles->proven_us = 400.5; }), Names{"cycle"});
     EXPECT_EQ(failed_with([](auto& f) { f.cycles->longest_us = 2999; }), Names{});
     EXPECT_EQ(failed_with([](auto& f) { f.cycles->longest_us = 3000; }), Names{"engine"});
-    EXPECT_EQ(failed_with([](auto& f) { f.passes_known_answer = false; }), Names{"canary"});
+    EXPECT_EQ(failed_with([](auto& f) { f.passes_known_answer = false; }), Names{"known_answer"});
     EXPECT_EQ(failed_with([](auto& f) { f.memory->available_bytes = 12'000'000; }), Names{});
     EXPECT_EQ(failed_with([](auto& f) { f.memory->available_bytes = 11'999'999; }),
               Names{"memory"});

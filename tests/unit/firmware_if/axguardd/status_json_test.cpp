@@ -322,7 +322,7 @@ TEST_F(StatusLineTest, AKeyThatIsMissingOrOfAnotherTypeIsNoStatus) {
                                      {"age_ms", -1},
                                      {"age_ms", 2.0},
                                      {"phase_ms", -5},
-                                     {"pictures", "many"},
+                                     {"snapshots", "many"},
                                      {"permits", -1},
                                      {"stands", nullptr},
                                      {"confirmed", 1},

@@ -170,7 +170,7 @@ TEST(Metrics, CarryTheNumbersOfTheGuard) {
           "\naxguard_admission_waived{bus=\"can0\",check=\"system\"} 0\n",
           "\naxguard_admission_waived{bus=\"can0\",check=\"latency\"} 1\n",
           "\naxguard_hashes_compared{bus=\"can0\"} 0\n",
-          "\naxguard_pictures_total{bus=\"can0\"} 123\n",
+          "\naxguard_snapshots_total{bus=\"can0\"} 123\n",
           "\naxguard_permits_total{bus=\"can0\"} 45\n",
           "\naxguard_samples_lost_total{bus=\"can0\"} 7\n",
           "\naxguard_frames_dropped_total{bus=\"can0\"} 8\n",

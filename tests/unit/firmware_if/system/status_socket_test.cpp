@@ -34,7 +34,7 @@ std::string line_of(const std::string& phase, const std::string& cause) {
            "\"withheld_reason\":\"none\",\"withheld_pair\":null,\"withheld_why\":null,\"stands\":"
            "true,"
            "\"confirmed\":false,\"session\":true,\"sample_us\":1000,\"period_us\":null,\"hashes\":"
-           "\"required\",\"pictures\":5,"
+           "\"required\",\"snapshots\":5,"
            "\"permits\":0,\"permits_slow\":0,\"stop_frames\":0,\"late\":0,\"refused\":0,"
            "\"send_faults\":0,\"samples_lost\":0,\"frames_dropped\":0,\"operator_acts\":0,"
            "\"operator_refused\":0,\"operator_ignored\":0}\n";

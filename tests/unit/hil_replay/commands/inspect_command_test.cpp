@@ -123,7 +123,7 @@ TEST_F(InspectCommand, AMachineFileDecodesTheAxes) {
 TEST_F(InspectCommand, ATraceOfAnotherBusHasNoSnapshots) {
     ASSERT_EQ(run(shop.write("a.log", regular()) + " --machine " + test::kPaperMachine), kExitClean)
         << shop.err;
-    EXPECT_EQ(document["machine"]["pictures"], 0);
+    EXPECT_EQ(document["machine"]["snapshots"], 0);
     EXPECT_NE(shop.err.find("no axis frames of this machine"), std::string::npos) << shop.err;
 }
 

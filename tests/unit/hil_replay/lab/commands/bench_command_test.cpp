@@ -34,7 +34,7 @@ TEST(BenchCommand, PosesTheBoxesOfAMachineThatProvesNothing) {
     fs::remove(file);
     EXPECT_EQ(document["bench"], "pose");
     EXPECT_EQ(document["tasks"], 8);
-    EXPECT_EQ(document["questions"], 2 * 8 + 8 + 8 * 2 + 8 * 64 + 5 * 2)
+    EXPECT_EQ(document["queries"], 2 * 8 + 8 + 8 * 2 + 8 * 64 + 5 * 2)
         << "whole boxes for both permits, the leaves below each, and a known-answer test a batch";
     EXPECT_GT(document["us"], 0.0);
     EXPECT_EQ(run_axguard_lab({"bench", "--paper", "--pose", "no.yaml"}), kExitUsage);
