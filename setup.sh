@@ -30,8 +30,8 @@ extra+=(doxygen)
 # Checks and compiles the board's side of the permit as firmware is.
 extra+=(cppcheck gcc-arm-none-eabi)
 
-# Draws the figures of axguard-lab chart.
-extra+=(gnuplot-nox)
+# Draws the figures of axguard-lab chart and of axguard check --plan.
+extra+=(python3-matplotlib)
 
 # LinuxCNC: its interpreter judges G-code, its planner moves the machine beside the guard.
 extra+=(linuxcnc-uspace linuxcnc-uspace-dev)

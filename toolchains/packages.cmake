@@ -14,6 +14,10 @@ install(DIRECTORY config/machines DESTINATION ${AXG_INSTALL_DATA}/config COMPONE
 install(DIRECTORY hil_replay/programs hil_replay/page DESTINATION ${AXG_INSTALL_DATA}/hil_replay
         COMPONENT axguard FILES_MATCHING PATTERN "*.ngc" PATTERN "*.html" PATTERN "*.css"
         PATTERN "*.js")
+install(DIRECTORY hil_replay/plan DESTINATION ${AXG_INSTALL_DATA}/hil_replay COMPONENT axguard
+        FILES_MATCHING PATTERN "*.py")
+install(DIRECTORY hil_replay/lab/chart DESTINATION ${AXG_INSTALL_DATA}/hil_replay/lab
+        COMPONENT axguard-lab FILES_MATCHING PATTERN "*.py")
 # A machine without mesh files, to begin one's own with.
 install(FILES config/machines/vice-mill.yaml RENAME sample.yaml
         DESTINATION ${CMAKE_INSTALL_FULL_SYSCONFDIR}/axguard COMPONENT axguardd)

@@ -155,7 +155,7 @@ void add_check(CommandLine& line) {
                       "with --plan: include the samples of this trace of the machine");
     command.add_output_folder(
         "--out", options->plan.out,
-        "with --plan: folder for plan.csv, lost.csv, plan.gp, plan.svg and plan.png");
+        "with --plan: folder for plan.csv, lost.csv, conditions.csv, plan.svg and plan.png");
     command.add_flag("--effective", options->is_effective,
                      "print only the effective machine file: every key with its value");
     command.add_output("--report", options->report,

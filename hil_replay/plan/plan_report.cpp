@@ -13,7 +13,7 @@
 #include "firmware_if/cli/whole_file.hpp"
 #include "firmware_if/setup/choose_plan.hpp"
 #include "firmware_if/setup/format_plan.hpp"
-#include "hil_replay/plan/gnuplot.hpp"
+#include "hil_replay/plan/draw_figures.hpp"
 #include "hil_replay/plan/model_choice.hpp"
 #include "hil_replay/plan/plan_lost.hpp"
 #include "hil_replay/plan/plan_report_json.hpp"
@@ -171,42 +171,6 @@ std::string csv_of(const ModelChoice& choice) {
     return text;
 }
 
-/// Plots the time of a cycle, and how much earlier stops come, against the inflation.
-std::string script_of(const CheckReport& report, const ModelChoice& choice,
-                      const std::string& scene) {
-    const std::string title = chart::quoted_for_gnuplot(escaped(report.loaded.machine.name) +
-                                                        ": time of a cycle against inflation, " +
-                                                        choice.models.front().measured.device);
-    const bool has_trace = choice.models.front().measured.trace.cycles != 0;
-    const std::string stoppable = has_trace ? "12:13" : "9:10";
-    const std::size_t colon = stoppable.find(':');
-    return chart::gnuplot_script(
-        "plan", {.width = 1000, .height = 620},
-        fmt::format(R"gp(set title {0} noenhanced font ',16'
-set xlabel 'inflation of a pair, mm (both certified deviations)'
-set ylabel 'us a cycle'
-set y2label 'a stop comes so much earlier, mm of way (median)' textcolor rgb red
-set y2tics nomirror textcolor rgb red
-set border 11 linecolor rgb grey
-set logscale y
-set yrange [*:*] noextend
-set y2range [0:*]
-set key top right reverse Left samplen 2 noenhanced
-set bmargin 5.5
-set label {1} at screen 0.5,0.03 center font ',11' noenhanced textcolor rgb ink
-file = 'plan.csv'
-style = 'with linespoints linewidth 2'
-plot file skip 1 using 3:{2} @style pointtype 7 linecolor rgb blue title 'stoppable, p99', \
-     file skip 1 using 3:{3} @style pointtype 6 dashtype 2 linecolor rgb blue \
-         title 'stoppable, slowest', \
-     file skip 1 using 3:6 @style pointtype 5 linecolor rgb green title 'contact mode, p99', \
-     file skip 1 using 3:18 axes x1y2 @style pointtype 9 linecolor rgb red \
-         title 'a stop comes earlier (right)'
-)gp",
-                    title, chart::quoted_for_gnuplot(scene), stoppable.substr(0, colon),
-                    stoppable.substr(colon + 1)));
-}
-
 bool write_files(const CheckReport& report, const ModelChoice& choice, const std::string& folder,
                  const std::string& scene) {
     std::error_code error;
@@ -219,14 +183,14 @@ bool write_files(const CheckReport& report, const ModelChoice& choice, const std
     if (!write_whole_file(folder + "/plan.csv", csv_of(choice), stderr) ||
         !write_whole_file(folder + "/lost.csv", csv_of_lost(report.loaded.machine, choice.models),
                           stderr) ||
-        !write_whole_file(folder + "/plan.gp", script_of(report, choice, scene), stderr)) {
+        !write_whole_file(folder + "/conditions.csv",
+                          conditions_table({{"machine", escaped(report.loaded.machine.name)},
+                                            {"device", choice.models.front().measured.device},
+                                            {"scene", scene}}),
+                          stderr)) {
         return false;
     }
-    const chart::Drawn drawn = chart::draw(folder, "plan");
-    if (drawn == chart::Drawn::no_gnuplot) {
-        fmt::print(stderr, "axguard check: {}\n", chart::kNoGnuplot);
-    }
-    return drawn != chart::Drawn::failed;
+    return draw_figures("plan/draw_plan.py", folder) != Drawn::failed;
 }
 
 }  // namespace

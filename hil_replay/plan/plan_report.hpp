@@ -12,7 +12,7 @@ namespace axg {
 struct ModelChoiceOptions {
     std::uint32_t positions = 1000, passes = 3;
     std::string trace;  // measured too; empty: none
-    std::string out;    // folder for plan.csv, lost.csv, plan.gp and the figure; empty: none
+    std::string out;    // folder for the tables and the figure; empty: none
 };
 
 /// Measures, prints, fills CheckFacts::plan, and writes the requested files. Reports failures on

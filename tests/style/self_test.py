@@ -436,9 +436,9 @@ def deployed_symbols_notice():
 
 def figure_labels_notice():
     def svg(*places):
-        return '<svg width="600" height="100">' + "".join(
-            f'<g transform="translate({x},{y})" font-size="12.00"  text-anchor="{a}">\n'
-            "<text><tspan>some words</tspan></text></g>" for x, y, a in places)
+        return '<svg viewBox="0 0 600 100">' + "".join(
+            f'<text style="font: 12px Arial; text-anchor: {a}" x="{x}" y="{y}" '
+            f'transform="rotate(-0 {x} {y})">some words</text>' for x, y, a in places)
     for places, faults in [
             ([(10, 20, "start"), (10, 40, "start")], 0),
             ([(10, 20, "start"), (40, 22, "start")], 1),

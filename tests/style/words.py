@@ -42,7 +42,7 @@ MESSAGE_WORDS = {
 PRINTS = re.compile(r"^(?:config|core|firmware_if|hil_replay)/.+\.(?:cpp|hpp)$")
 # Not yet in these words: kernels, and the figures of the laboratory.
 OLD_MESSAGES = re.compile(r"^(?:core/worst_case/|hil_replay/lab/(?:chart/|bench/paper_)|"
-                          r"hil_replay/plan/gnuplot|hil_replay/gcode/gcode_words\.cpp)")
+                          r"hil_replay/gcode/gcode_words\.cpp)")
 OPTION_NAMES = re.compile(r"--[a-z-]+")
 CPP_TOKEN = re.compile(
     r'//[^\n]*|/\*.*?\*/|R"\((.*?)\)"|"((?:[^"\\\n]|\\.)*)"|\'(?:[^\'\\\n]|\\.)+\'', re.S)

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -19,14 +18,12 @@
 #include "hil_replay/lab/chart/posed_machine.hpp"
 #include "hil_replay/lab/methods/mesh_cases.hpp"
 #include "hil_replay/lab/methods/method.hpp"
-#include "hil_replay/plan/gnuplot.hpp"
 
 namespace axg::chart {
 namespace {
 
 using lab::Draw;
 
-constexpr PictureSize kSize{1000, 620};
 constexpr double kWithinMm = 50;
 constexpr const char* kEngine = "axguard engine";
 
@@ -183,57 +180,6 @@ std::string table_of(const std::vector<Reported>& all) {
     return out;
 }
 
-/// Draws the engine and the float methods only: errors of double are too close to zero to see.
-bool is_drawn(const ClearanceErrors& s) {
-    return s.method == kEngine || s.method.ends_with("-f32");
-}
-
-std::string script_of(const std::vector<ClearanceErrors>& series, const std::string& beneath) {
-    constexpr std::array<const char*, 3> kProven = {"blue", "sky", "green"};
-    constexpr std::array<const char*, 4> kPlain = {"red", "gold", "ink", "grey"};
-    constexpr std::array<int, 7> kMarks = {7, 5, 6, 2, 1, 4, 8};
-    std::string plots;
-    std::size_t proven = 0, plain = 0, drawn = 0;
-    for (const ClearanceErrors& s : series) {
-        if (!is_drawn(s)) {
-            continue;
-        }
-        const char* const colour =
-            s.is_certified ? kProven[proven++ % kProven.size()] : kPlain[plain++ % kPlain.size()];
-        plots += fmt::format(
-            ", \\\n     file skip 1 using (strcol(1) eq '{}' ? $3 : NaN):(folded($4)) with points "
-            "pointtype {} pointsize small linecolor rgb {} title '{}: {} of {} above'",
-            s.method, kMarks[drawn++ % kMarks.size()], colour, s.method, s.above, s.count);
-    }
-    return gnuplot_script(
-        "clearance-error", kSize,
-        fmt::format(R"gp(set title "Reported clearance less the true distance" font ',17'
-small = kind eq 'svg' ? 0.45 : 0.7
-set bmargin 6.5
-tiny = kind eq 'svg' ? '12' : '9'
-# Both signs on a logarithmic scale: decades of um above and below 1e-10, which is drawn as zero.
-folded(um) = abs(um) <= 1e-10 ? 0 : sgn(um) * (log10(abs(um)) + 10)
-set logscale x
-set xrange [1e-6:1000]
-set yrange [-15:15]
-set xtics ('1 nm' 1e-6, '10 nm' 1e-5, '0.1 µm' 1e-4, '1 µm' 1e-3, '10 µm' 1e-2, '0.1 mm' 0.1, \
-           '1 mm' 1, '10 mm' 10, '0.1 m' 100, '1 m' 1000)
-set ytics ('+1 mm' 13, '+1 µm' 10, '+1 nm' 7, '+1 pm' 4, '0' 0, \
-           '-1 pm' -4, '-1 nm' -7, '-1 µm' -10, '-1 mm' -13)
-set xlabel "true distance of the two bodies"
-set ylabel "error"
-set object 1 rectangle from graph 0,first 0 to graph 1,graph 1 behind \
-    fillcolor rgb '#fbe9e0' fillstyle solid noborder
-set label "claims more than there is" at graph 0.01,0.965 textcolor rgb red
-set label "claims less: safe" at graph 0.01,0.035 textcolor rgb blue
-set key top right reverse Left samplen 1 noenhanced
-set label {} at screen 0.5,0.04 center font ',' . tiny textcolor rgb ink
-file = 'clearance-error.csv'
-plot 0 linecolor rgb ink linewidth 1.5 notitle{}
-)gp",
-                    quoted_for_gnuplot(beneath), plots));
-}
-
 }  // namespace
 
 Figure clearance_error_figure(const Request& request) {
@@ -245,7 +191,6 @@ Figure clearance_error_figure(const Request& request) {
     }
     std::vector<Reported> all;
     query_machine(*posed, request, all);
-    const std::size_t of_machine = all.size();
     if (!request.tritri.empty()) {
         query_tritri(request, all, out);
     }
@@ -257,13 +202,7 @@ Figure clearance_error_figure(const Request& request) {
             "above, {:.3g} um below\n",
             s.method, s.above, s.count, s.most_above_um, s.most_below_um);
     }
-    std::string beneath =
-        fmt::format("{} pairs of the machine paper-trunnion near contact", of_machine);
-    if (all.size() > of_machine) {
-        beneath += "; 240 poses of the meshes of the folder tritri";
-    }
     out.tables = {{"clearance-error.csv", table_of(all)}};
-    out.script = script_of(series, beneath + "; distances from exact arithmetic");
     return out;
 }
 

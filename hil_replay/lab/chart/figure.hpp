@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// A figure of `axguard-lab chart` before it is written: tables, a gnuplot script that
-// draws them, and a summary. Measuring a figure writes no file.
+// A figure of `axguard-lab chart` before it is written: tables, and a summary. Measuring a figure
+// writes no file.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
+
+#include "hil_replay/plan/draw_figures.hpp"
 
 namespace axg::chart {
 
@@ -23,12 +25,12 @@ struct Table {
 };
 
 struct Figure {
-    std::string name{};           // NAME.gp draws NAME.svg and NAME.png
-    std::vector<Table> tables{};  // input of the script
-    std::string script{};
-    std::string summary{};  // counts and times, for --json; empty: none
-    std::string words{};    // readable text; each line ends with \n
-    std::string fault{};    // why the measurement failed; empty: success
+    std::string name{};           // drawn as NAME.svg and NAME.png
+    std::vector<Table> tables{};  // what draw_figures.py draws
+    Conditions conditions{};      // what its captions state and no table contains
+    std::string summary{};        // counts and times, for --json; empty: none
+    std::string words{};          // readable text; each line ends with \n
+    std::string fault{};          // why the measurement failed; empty: success
 };
 
 }  // namespace axg::chart

@@ -9,9 +9,6 @@
 
 namespace axg::chart {
 
-inline constexpr double kDeadlineUs = 500;  // the default of deadline_us
-inline constexpr const char* kDeadlineWords = "deadline, 500 µs";
-
 /// One measurement, three figures: speed against accuracy, missed contacts, pairs not separated.
 [[nodiscard]] std::vector<Figure> method_figures(const Request& request);
 

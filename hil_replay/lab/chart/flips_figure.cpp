@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <vector>
 
 #include "core/base/pose.hpp"
@@ -16,7 +15,6 @@
 #include "hil_replay/lab/chart/method_scores.hpp"
 #include "hil_replay/lab/judge/exact_judge.hpp"
 #include "hil_replay/lab/methods/method.hpp"
-#include "hil_replay/plan/gnuplot.hpp"
 
 namespace axg::chart {
 namespace {
@@ -27,8 +25,6 @@ enum Frame : std::size_t { kAsIs, kQuarterTurn, kOffset, kTurned, kFrames };
 constexpr std::array<const char*, kFrames> kFrameNames = {"as it is", "quarter turn", "1.5 m away",
                                                           "turned"};
 constexpr std::size_t kOrders = 72;  // 6 * 6 orders of the vertices, 2 of the triangles
-constexpr unsigned kRowPx = 22, kCellPx = 72, kLeftPx = 190, kRightPx = 20, kTopPx = 150,
-                   kBottomPx = 50;
 
 /// Numbers of pairs for one method in one frame.
 struct Flips {
@@ -165,104 +161,6 @@ std::string table_of(const std::vector<MethodFlips>& all) {
     return out;
 }
 
-/// A row: a method compiled like the project, and its build with contraction if there is one.
-struct Row {
-    const MethodFlips *plain = nullptr, *fused = nullptr;
-};
-
-std::vector<Row> rows_of(const std::vector<MethodFlips>& all) {
-    std::vector<Row> rows;
-    for (const MethodFlips& m : all) {
-        if (m.is_fused) {
-            continue;
-        }
-        Row row{.plain = &m};
-        for (const MethodFlips& other : all) {
-            row.fused = other.is_fused && other.name == m.name + "-fma" ? &other : row.fused;
-        }
-        rows.push_back(row);
-    }
-    return rows;
-}
-
-constexpr std::size_t kColumns = 2 * (kFrames + 1);
-
-/// The cells of the figure: column, row, count, percent.
-std::string cells_of(const std::vector<Row>& rows) {
-    std::string out = "$cells << END\n";
-    for (std::size_t row = 0; row < rows.size(); ++row) {
-        for (const bool fused : {false, true}) {
-            const MethodFlips* const m = fused ? rows[row].fused : rows[row].plain;
-            std::uint64_t wrong = 0, pairs = 0;
-            for (std::size_t f = 0; m != nullptr && f < kFrames; ++f) {
-                const Flips& flips = m->frames[f];
-                out += fmt::format("{},{},{},{:.4g}\n", f + (fused ? kFrames + 1 : 0), row,
-                                   flips.differing,
-                                   100.0 * double(flips.differing) / double(flips.pairs));
-                wrong += flips.wrong;
-                pairs += flips.pairs;
-            }
-            if (m != nullptr) {
-                out += fmt::format("{},{},{},{:.4g}\n", kFrames + (fused ? kFrames + 1 : 0), row,
-                                   wrong, 100.0 * double(wrong) / double(pairs));
-            }
-        }
-    }
-    return out + "END\n";
-}
-
-std::string ticks_of(const std::vector<Row>& rows) {
-    std::string out = "set ytics scale 0 (";
-    for (std::size_t row = 0; row < rows.size(); ++row) {
-        out += fmt::format("{}{} {}", row == 0 ? "" : ", ",
-                           quoted_for_gnuplot(rows[row].plain->name), row);
-    }
-    out += ") noenhanced\nset x2tics scale 0 (";
-    for (std::size_t column = 0; column < kColumns; ++column) {
-        const std::size_t f = column % (kFrames + 1);
-        out += fmt::format("{}\"{}\" {}", column == 0 ? "" : ", ",
-                           f < kFrames ? kFrameNames[f] : "contacts\\ncalled apart", column);
-    }
-    return out + ")\n";
-}
-
-std::string script_of(const std::vector<MethodFlips>& all, const std::string& beneath) {
-    const std::vector<Row> rows = rows_of(all);
-    const PictureSize size{kLeftPx + kRightPx + kCellPx * static_cast<unsigned>(kColumns) + kCellPx,
-                           kTopPx + kBottomPx + kRowPx * static_cast<unsigned>(rows.size())};
-    return gnuplot_script(
-        "flips", size,
-        fmt::format(R"gp({0}{1}small = kind eq 'svg' ? '11.5' : '8.5'
-set lmargin at screen {2:.4f}; set rmargin at screen {3:.4f}
-set bmargin at screen {4:.4f}; set tmargin at screen {5:.4f}
-set label "Pairs whose verdict changes with the order of vertices and triangles" \
-    at screen 0.5,{6:.4f} center font ',16'
-set label {7} at screen 0.5,{8:.4f} center font ',' . small
-set label "compiled without contraction" at first 1.5, screen {9:.4f} center font ',' . small
-set label "contraction allowed (FMA)" at first 6.5, screen {9:.4f} center font ',' . small
-unset xtics; unset grid; unset border; unset key
-set link x2
-set ytics font ',' . small; set x2tics font ',' . small
-set xrange [-0.5:{10}]
-set yrange [{11}:-0.5]
-set palette defined (0 '#fdeec4', 1 '#f5b041', 2 '#d1480b', 3 '#7a1d08')
-set logscale cb
-set cbrange [0.1:100]
-unset colorbox
-set style fill solid 1 noborder
-set arrow from 4.5,graph 0 to 4.5,graph 1 nohead front linecolor rgb grey linewidth 2
-plot $cells using ($3>0 ? $1 : NaN):2:($1-0.47):($1+0.47):($2-0.45):($2+0.45):4 with boxxyerror \
-       linecolor palette, \
-     '' using 1:2:(sprintf('%d',$3)):($3==0 ? 0x0b5394 : $4>10 ? 0xffffff : 0x202020) \
-       with labels textcolor rgb variable font ',' . small
-)gp",
-                    cells_of(rows), ticks_of(rows), double(kLeftPx) / size.width,
-                    1 - double(kRightPx) / size.width, double(kBottomPx) / size.height,
-                    1 - double(kTopPx) / size.height, 1 - 22.0 / size.height,
-                    quoted_for_gnuplot(beneath), 20.0 / size.height, 1 - 75.0 / size.height,
-                    kColumns - 0.5, double(rows.size()) - 0.5));
-}
-
 }  // namespace
 
 Figure flips_figure(const Request& request) {
@@ -291,13 +189,8 @@ Figure flips_figure(const Request& request) {
         }
         all.push_back(m);
     }
-    const std::size_t pairs = f32[0].touches.size();
-    out.summary = describe_flips(totals, pairs, kOrders);
+    out.summary = describe_flips(totals, f32[0].touches.size(), kOrders);
     out.tables = {{"flips.csv", table_of(all)}};
-    out.script = script_of(
-        all, fmt::format("of {} pairs in {} orders each, in each frame rounded to what the method "
-                         "computes in; last columns: all frames",
-                         pairs, kOrders));
     return out;
 }
 

@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Speed against accuracy, and the failure maps: every method on the same pairs of triangles.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <vector>
 
 #include "hil_replay/lab/cases/pair_cases.hpp"
-#include "hil_replay/lab/chart/failures_picture.hpp"
 #include "hil_replay/lab/chart/figures.hpp"
 #include "hil_replay/lab/chart/figures_json.hpp"
 #include "hil_replay/lab/chart/method_scores.hpp"
 #include "hil_replay/lab/chart/processor.hpp"
-#include "hil_replay/lab/chart/speed_accuracy_picture.hpp"
+#include "hil_replay/lab/chart/score_tables.hpp"
 
 namespace axg::chart {
 namespace {
@@ -40,26 +37,17 @@ std::vector<Figure> method_figures(const Request& request) {
     }
     time_methods(book, methods, passes, scores);
 
-    const std::string cases =
-        fmt::format("{} pairs: {} of each of {} kinds, answers from exact arithmetic, seed {}",
-                    book.f32.truth.size(), per_category, lab::pair_category_count(), request.seed);
-    const Score& any = scores.front().machine;
-    const std::string machine_like = fmt::format(
-        "{} pairs within 4 m and longer than 1 µm, of {} of each of {} kinds, seed {}",
-        any.intersecting + any.apart, per_category, lab::pair_category_count(), request.seed);
     Figure speed{.name = "speed-accuracy"};
     speed.tables = {{"speed-accuracy.csv", speed_accuracy_table(scores)}};
-    speed.script = speed_accuracy_script(
-        scores, machine_like, fmt::format("{}, least of {} passes", format_processor(), passes));
+    speed.conditions = {{"pairs_of_each_kind", std::to_string(per_category)},
+                        {"kinds", std::to_string(lab::pair_category_count())},
+                        {"passes", std::to_string(passes)}};
     speed.summary = describe_methods(scores, passes, format_processor());
     Figure missed{.name = "missed-contacts"};
     missed.tables = {{"failure-map.csv", failure_map_table(scores)},
                      {"failing-cases.csv", failing_cases_table(scores, book, methods)}};
-    missed.script = missed_script(scores, cases);
     missed.words = format_failing_cases(scores, book, methods);
-    Figure apart{.name = "not-told-apart"};
-    apart.script = not_told_apart_script(scores, cases);
-    return {std::move(speed), std::move(missed), std::move(apart)};
+    return {std::move(speed), std::move(missed), {.name = "not-told-apart"}};
 }
 
 }  // namespace axg::chart

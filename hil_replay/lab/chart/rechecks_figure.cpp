@@ -13,14 +13,12 @@
 #include "hil_replay/lab/chart/figures.hpp"
 #include "hil_replay/lab/chart/figures_json.hpp"
 #include "hil_replay/lab/chart/posed_machine.hpp"
-#include "hil_replay/plan/gnuplot.hpp"
 
 namespace axg::chart {
 namespace {
 
 using lab::Draw;
 
-constexpr PictureSize kSize{1000, 540};
 enum Family : std::size_t { kAnywhere, kNear, kSliding, kUphill, kFamilies };
 constexpr std::array<const char*, kFamilies> kNames = {"anywhere", "near contact", "sliding",
                                                        "climb to the most"};
@@ -148,47 +146,6 @@ std::uint64_t total(const Counts& counts, std::size_t family) {
                            std::uint64_t{0});
 }
 
-std::string script_of(const Counts& counts, const std::string& beneath) {
-    constexpr std::array<const char*, kFamilies> kColours = {"grey", "sky", "red", "ink"};
-    constexpr std::array<int, kFamilies> kMarks = {7, 9, 5, 2};
-    std::string ticks, plots;
-    for (std::size_t bin = 0; bin < kBins; ++bin) {
-        ticks += fmt::format("{}'{}' {}", bin == 0 ? "" : ", ",
-                             bin == 0 ? 0 : std::uint64_t{1} << (bin - 1), bin);
-    }
-    for (std::size_t f = 0; f < kFamilies; ++f) {
-        plots += fmt::format(
-            "{}'rechecks.csv' skip 1 using 0:(${} > 0 ? 100.0 * ${} / {} : NaN) "
-            "with linespoints linewidth 2 linecolor rgb {} pointtype {} "
-            "pointsize 0.8 title '{}: most {}'",
-            f == 0 ? "" : ", \\\n     ", f + 3, f + 3, total(counts, f), kColours[f], kMarks[f],
-            kNames[f], counts.worst[f].rechecks);
-    }
-    const double capacity = std::log2(counts.capacity) + 1;
-    return gnuplot_script("rechecks", kSize,
-                          fmt::format(
-                              R"gp(
-set title "Pairs of triangles that float leaves to double, in the neediest question of a cycle" \
-    font ',16'
-set bmargin 7
-small = kind eq 'svg' ? '12' : '9'
-set xlabel "rechecks of that question (to twice as many, less one)"
-set ylabel "share of the cycles"
-set logscale y
-set yrange [*:180]
-set xrange [-0.5:{0}]
-set ytics ('100%%' 100, '10%%' 10, '1%%' 1, '0.1%%' 0.1, '0.01%%' 0.01, '0.001%%' 0.001)
-set xtics ({1})
-set key top right reverse Left width -2 samplen 2.5
-set arrow from first {2}, graph 0 to first {2}, graph 0.62 nohead \
-    linecolor rgb red linewidth 2 dashtype 2
-set label "the list: {3}" at first {2}, graph 0.66 center textcolor rgb red
-set label "{4}" at screen 0.5,0.07 center font ',' . small textcolor rgb ink
-plot {5}
-)gp",
-                              kBins - 0.5, ticks, capacity, counts.capacity, beneath, plots));
-}
-
 void describe(const PosedMachine& posed, const Counts& counts, Figure& out) {
     std::vector<RecheckNeeds> families;
     const Need* worst = &counts.worst[0];
@@ -200,16 +157,17 @@ void describe(const PosedMachine& posed, const Counts& counts, Figure& out) {
         worst = need.rechecks > worst->rechecks ? &need : worst;
     }
     out.summary = describe_rechecks(counts.capacity, families);
-    out.words = fmt::format("most rechecks of one question: {} of {}, {} at {}\n", worst->rechecks,
-                            counts.capacity, posed.pair_name(worst->pair),
-                            posed.format_position(worst->snapshot));
-    const std::string beneath = fmt::format(
-        "machine paper-trunnion, eight pairs; {}, {}, {} and {} cycles, contacts among "
-        "them\\nworst: {} at {}",
-        total(counts, 0), total(counts, 1), total(counts, 2), total(counts, 3),
-        posed.pair_name(worst->pair), posed.format_position(worst->snapshot));
+    const std::string worst_at =
+        posed.pair_name(worst->pair) + " at " + posed.format_position(worst->snapshot);
+    out.words = fmt::format("most rechecks of one question: {} of {}, {}\n", worst->rechecks,
+                            counts.capacity, worst_at);
     out.tables = {{"rechecks.csv", table_of(counts)}};
-    out.script = script_of(counts, beneath);
+    out.conditions.emplace_back("recheck_capacity", std::to_string(counts.capacity));
+    for (std::size_t f = 0; f < kFamilies; ++f) {
+        out.conditions.emplace_back(fmt::format("most_rechecks {}", kNames[f]),
+                                    std::to_string(counts.worst[f].rechecks));
+    }
+    out.conditions.emplace_back("worst_rechecks", worst_at);
 }
 
 }  // namespace

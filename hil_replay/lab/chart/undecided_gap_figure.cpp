@@ -16,14 +16,12 @@
 #include "hil_replay/lab/chart/figures_json.hpp"
 #include "hil_replay/lab/judge/exact_judge.hpp"
 #include "hil_replay/lab/methods/method.hpp"
-#include "hil_replay/plan/gnuplot.hpp"
 
 namespace axg::chart {
 namespace {
 
 using lab::Draw;
 
-constexpr PictureSize kSize{1000, 600};
 constexpr double kSizeMm = 100;
 constexpr std::array<double, 3> kAspects = {1, 1e2, 1e4};
 // Bins of the true gap: 1e-3 to 1e3 um in quarters of a decade.
@@ -178,43 +176,6 @@ std::string table_of(const std::vector<Curve>& curves) {
     return out;
 }
 
-std::string script_of(const std::vector<Curve>& curves, const std::string& beneath) {
-    constexpr std::array<const char*, 3> kColours = {"ink", "red", "sky"};
-    constexpr std::array<int, 3> kMarks = {7, 5, 9};
-    std::string plots;
-    std::size_t method = 0;
-    for (std::size_t i = 0; i < curves.size(); ++i) {
-        const Curve& curve = curves[i];
-        method += i > 0 && curve.method != curves[i - 1].method ? 1 : 0;
-        const auto aspect = static_cast<std::size_t>(
-            std::find(kAspects.begin(), kAspects.end(), curve.aspect) - kAspects.begin());
-        plots += fmt::format(
-            "{}'undecided-gap.csv' every ::{}::{} using (sqrt($3*$4)):7 with linespoints "
-            "linewidth {} dashtype {} linecolor rgb {} pointtype {} pointsize {} title '{}, "
-            "slivers 1:{:g}'",
-            i == 0 ? "" : ", \\\n     ", 1 + i * kBins, (i + 1) * kBins, 3.2 - 0.9 * double(aspect),
-            method + 1, kColours[aspect], kMarks[aspect], 1.1 - 0.25 * double(aspect), curve.method,
-            curve.aspect);
-    }
-    return gnuplot_script(
-        "undecided-gap", kSize,
-        fmt::format(
-            R"gp(set title "How wide a gap must be for the certified test to see it" font ',17'
-set bmargin 6.5
-tiny = kind eq 'svg' ? '12' : '9'
-set logscale x
-set xrange [{}:1000]
-set yrange [0:105]
-set xtics ('1 nm' 1e-3, '10 nm' 1e-2, '0.1 µm' 0.1, '1 µm' 1, '10 µm' 10, '0.1 mm' 100, '1 mm' 1000)
-set xlabel "true gap between two triangles of {:g} mm"
-set ylabel "left undecided, % of the pairs"
-set key top right reverse Left samplen 3 noenhanced spacing 1.15
-set label {} at screen 0.5,0.04 center font ',' . tiny textcolor rgb ink
-plot {}
-)gp",
-            kLeastUm, kSizeMm, quoted_for_gnuplot(beneath), plots));
-}
-
 }  // namespace
 
 Figure undecided_gap_figure(const Request& request) {
@@ -238,10 +199,6 @@ Figure undecided_gap_figure(const Request& request) {
     }
     out.summary = describe_undecided_gaps(gaps);
     out.tables = {{"undecided-gap.csv", table_of(curves)}};
-    out.script = script_of(
-        curves, fmt::format("{} pairs a line: vertex, edge and face against one another, turned "
-                            "at random, rounded to float; true gap from exact arithmetic",
-                            pairs));
     return out;
 }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// axguard-lab chart: measures verdicts and times of the methods and writes tables, gnuplot scripts
-// and figures.
+// axguard-lab chart: measures verdicts and times of the methods, writes tables and draws them.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "config/text/quote_text.hpp"
+#include "core/machine/machine.hpp"
 #include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/json_output.hpp"
@@ -21,7 +21,8 @@
 #include "hil_replay/lab/commands/lab_commands_json.hpp"
 #ifdef AXG_EXACT
 #include "hil_replay/lab/chart/figures.hpp"
-#include "hil_replay/plan/gnuplot.hpp"
+#include "hil_replay/lab/chart/processor.hpp"
+#include "hil_replay/plan/draw_figures.hpp"
 #endif
 
 namespace axg {
@@ -36,7 +37,6 @@ struct ChartOptions {
 
 #ifdef AXG_EXACT
 
-using chart::Drawn;
 using chart::Figure;
 using chart::Request;
 
@@ -62,35 +62,42 @@ constexpr Step kSteps[] = {
     {"flips", &one<&chart::flips_figure>},
 };
 
-/// Writes the tables and the script. False on failure, with the reason on stderr.
-bool write_figure(const std::filesystem::path& folder, const Figure& figure) {
-    for (const chart::Table& table : figure.tables) {
-        if (!write_whole_file((folder / table.file).string(), table.text, stderr)) {
-            return false;
-        }
-    }
-    return write_whole_file((folder / (figure.name + ".gp")).string(), figure.script, stderr);
-}
-
-/// Measures, writes and draws the figures of one step, and prints their text.
+/// Measures the figures of one step, writes their tables, and prints their text.
 int take_step(const Step& step, const Request& request, const ChartOptions& options,
-              ChartDocument& document, bool& has_gnuplot) {
+              ChartDocument& document, Conditions& conditions) {
     for (const Figure& figure : step.measure(request)) {
         if (!figure.fault.empty()) {
             fmt::print(stderr, "axguard-lab chart: {}\n", figure.fault);
             return kExitInput;
         }
-        if (!write_figure(options.out, figure)) {
-            return kExitInternal;
+        for (const chart::Table& table : figure.tables) {
+            const std::filesystem::path path = std::filesystem::path(options.out) / table.file;
+            if (!write_whole_file(path.string(), table.text, stderr)) {
+                return kExitInternal;
+            }
         }
-        const Drawn drawn = has_gnuplot ? chart::draw(options.out, figure.name) : Drawn::no_gnuplot;
-        if (drawn == Drawn::failed) {
-            return kExitInternal;
-        }
-        has_gnuplot = drawn == Drawn::yes;
-        document.figures.push_back({figure.name, has_gnuplot, figure.summary});
+        conditions.insert(conditions.end(), figure.conditions.begin(), figure.conditions.end());
+        document.figures.push_back({figure.name, false, figure.summary});
         fmt::print(options.json.words(), "{}", figure.words);
     }
+    return kExitClean;
+}
+
+/// Draws the tables of the folder.
+int draw_all(const ChartOptions& options, const Conditions& conditions, ChartDocument& document) {
+    const std::filesystem::path path = std::filesystem::path(options.out) / "conditions.csv";
+    if (!write_whole_file(path.string(), conditions_table(conditions), stderr)) {
+        return kExitInternal;
+    }
+    const Drawn drawn = draw_figures("lab/chart/draw_figures.py", options.out);
+    if (drawn == Drawn::failed) {
+        return kExitInternal;
+    }
+    for (auto& figure : document.figures) {
+        figure.is_drawn = drawn == Drawn::yes;
+    }
+    fmt::print(options.json.words(), "{}: tables (.csv){}\n", options.out,
+               drawn == Drawn::yes ? " and figures (.svg, .png)" : "");
     return kExitClean;
 }
 
@@ -132,23 +139,23 @@ int chart_all(const ChartOptions& options) {
                           .tritri = options.tritri};
     ChartDocument document{.seed = options.seed, .is_quick = options.quick, .figures = {}};
     const bool is_terminal = isatty(STDERR_FILENO) == 1;
-    bool has_gnuplot = true;
+    Conditions conditions{{"seed", std::to_string(options.seed)},
+                          {"deadline_us", std::to_string(Machine{}.deadline_us)},
+                          {"processor", chart::format_processor()}};
     std::size_t number = 0;
     for (const Step& step : kSteps) {
         if (is_terminal) {
             fmt::print(stderr, "\rstep {} of {}: {}{:20}\r", ++number, std::size(kSteps), step.name,
                        "");
         }
-        const int exit_code = take_step(step, request, options, document, has_gnuplot);
+        const int exit_code = take_step(step, request, options, document, conditions);
         if (exit_code != kExitClean) {
             return exit_code;
         }
     }
-    if (!has_gnuplot) {
-        fmt::print(stderr, "axguard-lab chart: {}\n", chart::kNoGnuplot);
+    if (const int exit_code = draw_all(options, conditions, document); exit_code != kExitClean) {
+        return exit_code;
     }
-    fmt::print(options.json.words(), "{}: tables (.csv), scripts (.gp){}\n", options.out,
-               has_gnuplot ? " and figures (.svg, .png)" : "");
     return write_json(options.json, describe_chart(document)) ? kExitClean : kExitInternal;
 }
 
@@ -170,8 +177,7 @@ void add_chart(CommandLine& line) {
     const Command command = line.add_command(
         "chart", "Measure speed and accuracy of many methods and draw the figures");
     command.set_example("axguard-lab chart -o figures/");
-    command.add_output_folder("-o,--out", options->out, "folder for tables, scripts and figures")
-        .required();
+    command.add_output_folder("-o,--out", options->out, "folder for tables and figures").required();
     command.add_option("--seed", options->seed, "seed of all random values");
     command.add_flag("--quick", options->quick, "use few cases: seconds instead of minutes");
     command.add_option(
