@@ -94,6 +94,7 @@ def main():
     faults = [*label_faults(scatter_panels), *pareto_faults(scatter_panels)]
     if matplotlib.__version__.startswith(DRAWN_WITH):
         faults += drawing_faults(root, "hil_replay/lab/chart/draw_figures.py", 9)
+        faults += drawing_faults(root, "docs/figures/records.py", 5)
     finish(faults)
 
 
