@@ -11,8 +11,6 @@
 namespace axg {
 namespace {
 
-constexpr std::uint32_t kExactBitsMax = 53;  // a double holds no more
-
 bool is_can_length(std::uint32_t bytes) noexcept {
     constexpr std::array<std::uint32_t, 7> kFlexible{12, 16, 20, 24, 32, 48, 64};
     return (bytes >= 1 && bytes <= 8) ||

@@ -19,8 +19,6 @@ namespace axg {
 namespace {
 
 constexpr WholeRange kCanId{0x001, 0x7FF};
-constexpr std::size_t kFdAxesMax = 13;            // 64 bytes: header and 13 positions of 32 bits
-constexpr std::size_t kLookAheadAxesMax = 7;      // 64 bytes: header and two positions each
 constexpr std::uint32_t kClassicalToolMax = 255;  // one byte of the last frame
 constexpr std::uint32_t kAgePeriodsMax = 10;      // of positions at their latch
 constexpr std::uint32_t kHashesIn = 0x582, kHashesOut = 0x602;
@@ -39,23 +37,10 @@ std::string hex(std::uint32_t id) {
     return buffer.data();
 }
 
-/// Whether the frames are of our own making: counter, checksum, SYNC, heartbeat.
-bool is_native(const CanLayout& can) noexcept {
-    return can.format == CanFormat::classical || can.format == CanFormat::fd;
-}
-
 constexpr std::array<std::string_view, 5> kSources{"classical", "fd", "signals", "dbc", "cia402"};
 
 std::string source_of(const MachineDraft& draft) {
     return std::string{kSources[static_cast<std::size_t>(draft.can_source)]};
-}
-
-std::size_t frames_needed(const Machine& machine) noexcept {
-    if (!is_native(machine.can)) {
-        return 0;
-    }
-    // Two slots a frame; the one behind the last axis holds mode, tool and flags.
-    return machine.can.format == CanFormat::fd ? 1 : (machine.axes.size() + 2) / 2;
 }
 
 /// A list of exactly `count` numbers in hexadecimal or decimal; what is read replaces `out`.
@@ -165,7 +150,7 @@ void read_single_ids(const YamlNode& node, std::size_t frames, MachineDraft& dra
 
 void read_frame_ids(MapReader& reader, MachineDraft& draft) {
     CanLayout& can = draft.machine.can;
-    const std::size_t frames = frames_needed(draft.machine);
+    const std::size_t frames = own_axis_frames(can.format, draft.machine.axes.size());
     const YamlNode* ids = reader.find("ids", Need::optional, "a map of identifiers");
     bool axes_written = false;
     if (ids != nullptr) {
@@ -362,6 +347,15 @@ void read_receiver_rules(MapReader& reader, CanLayout& can) {
     read_small(reader, "counter_delta_max", {1, 13}, can.counter_delta_max);
 }
 
+/// A snapshot has a bit for each of its frames.
+void check_signal_frames(MapReader& reader, const CanLayout& can) {
+    if (const std::size_t frames = signal_frames(can.signals); frames > kAxisFramesMax) {
+        reader.report("format", std::to_string(frames) + " frames with positions and states",
+                      "at most " + std::to_string(kAxisFramesMax) +
+                          "; map the objects of a drive in fewer PDOs");
+    }
+}
+
 /// Version 2 names the lap of its sample; there is no other.
 void check_permit_version(MapReader& reader, const CanLayout& can) {
     constexpr std::uint32_t kVersion = 2, kMost = 255;
@@ -484,6 +478,7 @@ void read_can(MapReader& top, MachineDraft& draft) {
     read_look_ahead(reader, draft);
     read_dbc(reader, draft);
     read_drives(reader, draft);
+    check_signal_frames(reader, draft.machine.can);
     check_permit_version(reader, draft.machine.can);
     read_permit_samples(reader, draft);
     read_latched_age(reader, draft);

@@ -361,16 +361,16 @@ void read_sync(MapReader& can, CanLayout& layout) {
     can.whole("sync_window_us", Need::optional, {10, layout.sample_us}, layout.sync_window_us);
 }
 
-/// Two drives under one identifier destroy each other's frames.
+/// Two PDOs under one identifier destroy each other's frames.
 void check_drive_ids(MapReader& can, const Machine& machine) {
     const std::vector<CanSignal>& signals = machine.can.signals;
     for (std::size_t i = 0; i < signals.size(); ++i) {
         for (std::size_t j = 0; j < i; ++j) {
-            if (signals[i].id == signals[j].id && signals[i].axis != signals[j].axis) {
+            const CanSignal &a = signals[j], &b = signals[i];
+            if (a.id == b.id && (a.axis != b.axis || a.frame_bytes != b.frame_bytes)) {
                 can.report("drives",
-                           id_text(signals[i].id) + " for both " +
-                               machine.axes[signals[j].axis].name + " and " +
-                               machine.axes[signals[i].axis].name,
+                           id_text(a.id) + " for both " + machine.axes[a.axis].name + " and " +
+                               (a.axis == b.axis ? "another PDO" : machine.axes[b.axis].name),
                            "identifiers of its own for each drive");
                 return;
             }

@@ -70,7 +70,7 @@ bool read_layout(MapReader& reader, CanSignal& signal) {
     std::size_t order = 0;
     bool sound = read_id(reader, signal);
     sound &= reader.whole("start", Need::required, {0, kFrameBitsMax - 1}, start);
-    sound &= reader.whole("length", Need::required, {1, 64}, length);
+    sound &= reader.whole("length", Need::required, {1, kExactBitsMax}, length);
     sound &= reader.choice("order", Need::required, kOrders, order);
     sound &= reader.boolean("signed", Need::required, signal.is_signed);
     sound &= reader.number("factor", Need::required, {-1e9, 1e9}, signal.factor);

@@ -15,6 +15,7 @@
 namespace axg {
 
 inline constexpr std::uint32_t kFrameBitsMax = 512;
+inline constexpr std::uint32_t kExactBitsMax = 53;  // of an integer: a double holds no more
 using FrameBits = std::bitset<kFrameBitsMax>;
 
 inline constexpr std::array<std::string_view, 7> kSignalUnitNames{"mm",  "inch", "m",   "um",

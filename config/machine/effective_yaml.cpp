@@ -185,9 +185,9 @@ void fill_pairs(YamlNode& pairs, YamlNode& guard) {
     }
 }
 
-void fill_ids(YamlNode& ids, const CanLayout& can, bool is_native) {
+void fill_ids(YamlNode& ids, const CanLayout& can) {
     fill(ids, "sync", id_of(can.sync_id));
-    if (is_native) {
+    if (is_native(can)) {
         fill(ids, "axes", ids_of(can.axis_ids));
     }
     fill(ids, "permit", id_of(can.permit_id));
@@ -225,11 +225,10 @@ YamlNode ends_of(std::uint32_t least, std::uint32_t most) {
 }
 
 void fill_can(YamlNode& map, const CanLayout& can) {
-    const bool is_native = can.format == CanFormat::classical || can.format == CanFormat::fd;
     fill(map, "format", value_of("classical"));
     fill(map, "sample_us", value_of(can.sample_us));
-    fill_ids(map_at(map, "ids"), can, is_native);
-    if (is_native) {
+    fill_ids(map_at(map, "ids"), can);
+    if (is_native(can)) {
         fill(map, "data_ids", ids_of(can.data_ids));
     }
     if (has_sample_counter(can)) {

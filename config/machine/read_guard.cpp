@@ -80,7 +80,7 @@ void read_cap(MapReader& reader, MachineDraft& draft) {
     }
     const std::string found{kCaps[cap]};
     const CanLayout& can = machine.can;
-    const bool has_ack = can.format == CanFormat::classical || can.format == CanFormat::fd;
+    const bool has_ack = is_native(can);
     if (!has_ack) {
         reader.report(
             "cap", found + " with frames of another format",

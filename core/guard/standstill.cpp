@@ -43,7 +43,7 @@ bool is_quiet(const StandstillRules& rules, const AxisSnapshot& snapshot) noexce
 /// Whether the frames themselves report motion: by a mode, or by the speeds of all axes.
 bool reports_motion(const Machine& machine) noexcept {
     const CanLayout& can = machine.can;
-    if (can.format == CanFormat::classical || can.format == CanFormat::fd) {
+    if (is_native(can)) {
         return true;
     }
     std::uint32_t with_speed = 0;

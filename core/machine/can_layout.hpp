@@ -2,7 +2,9 @@
 // Which frame carries which axis: plain data from the machine file, read by both ends of the wire.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -10,7 +12,13 @@
 
 namespace axg {
 
-inline constexpr std::uint8_t kSyncCounterMax = 240;  // CANopen object 0x1019
+inline constexpr std::uint8_t kSyncCounterMax = 240;   // CANopen object 0x1019
+inline constexpr std::uint32_t kFdAxesMax = 13;        // 12 + 4 * 13 = 64 bytes
+inline constexpr std::uint32_t kLookAheadAxesMax = 7;  // 6 + 8 * 7 = 62 bytes
+inline constexpr std::uint32_t kSignalsMax = 96;       // of all frames together
+// Axis frames of a sample. Drives: separate positions and status words; signals: one a frame, and
+// four of the board itself.
+inline constexpr std::uint32_t kAxisFramesMax = 2 * kAxesMax + 4;
 
 // classical and fd are ours; signals are frames of other makers without SYNC (a DBC file, or
 // written in the machine file); cia402 are the process data of drives, all latched by one SYNC.
@@ -123,6 +131,29 @@ struct CanLayout {
     std::uint32_t frozen_samples = 100;   // mode is moving, positions bit-equal
     std::uint32_t heartbeat_timeout_us = 65'000;  // of the board; formats of our own only
 };
+
+/// Whether the frames are of our own making: counter, checksum, SYNC, heartbeat.
+[[nodiscard]] inline bool is_native(const CanLayout& can) noexcept {
+    return can.format == CanFormat::classical || can.format == CanFormat::fd;
+}
+
+/// Axis frames of our own formats. Classical ones have two slots: an axis each, then the status.
+[[nodiscard]] constexpr std::uint32_t own_axis_frames(CanFormat format,
+                                                      std::size_t axis_count) noexcept {
+    return format == CanFormat::classical ? static_cast<std::uint32_t>((axis_count + 2) / 2)
+                                          : format == CanFormat::fd;
+}
+
+/// Frames that carry the signals: one for each id and selector.
+[[nodiscard]] inline std::size_t signal_frames(const std::vector<CanSignal>& signals) noexcept {
+    std::size_t count = 0;
+    for (auto at = signals.begin(); at != signals.end(); ++at) {
+        count += std::none_of(signals.begin(), at, [&](const CanSignal& other) {
+            return other.id == at->id && other.selector == at->selector;
+        });
+    }
+    return count;
+}
 
 /// Whether SYNC counts the samples from 1 to 240. Without it no permit can name its sample: signals
 /// have no SYNC, and a counter that wraps earlier gives an old permit the number of a new sample.

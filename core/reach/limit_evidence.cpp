@@ -449,8 +449,7 @@ LimitRules limit_rules(const Machine& machine, std::span<const double> count) no
         out.machine_stop.braking_strides =
             std::max(out.machine_stop.braking_strides, axis.stop_strides);
     }
-    out.machine_stop.stops_all =
-        machine.can.format == CanFormat::classical || machine.can.format == CanFormat::fd;
+    out.machine_stop.stops_all = is_native(machine.can);
     out.machine_stop.reaction_strides =
         strides(free_seconds(machine, machine.can.permit_samples.most));
     return out;

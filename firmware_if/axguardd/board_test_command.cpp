@@ -305,7 +305,7 @@ std::string case_fault(const std::string& name) {
 }  // namespace
 
 bool is_testable(const CanLayout& can) noexcept {
-    return can.format == CanFormat::classical || can.format == CanFormat::fd;
+    return is_native(can);
 }
 
 void add_board_test(CommandLine& line) {

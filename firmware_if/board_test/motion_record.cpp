@@ -2,6 +2,7 @@
 #include "firmware_if/board_test/motion_record.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -20,11 +21,10 @@ double unwound(double position, double before) noexcept {
 }  // namespace
 
 MotionRecord::MotionRecord(const Machine& machine) : machine_(machine) {
-    const AxisFrameSet set = make_frame_set(machine);
+    const std::array<double, kAxesMax> units = axis_units(machine);
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
         const Axis& axis = machine.axes[i];
-        resolution_.push_back(2 * set.axes[i].unit +
-                              2 * (axis.position_error + axis.following_error));
+        resolution_.push_back(2 * units[i] + 2 * (axis.position_error + axis.following_error));
     }
 }
 

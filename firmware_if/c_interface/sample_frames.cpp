@@ -20,9 +20,7 @@ std::uint16_t lap_of(std::uint64_t number) noexcept {
 }  // namespace
 
 bool takes_samples(const Machine& machine) noexcept {
-    const CanFormat format = machine.can.format;
-    return (format == CanFormat::classical || format == CanFormat::fd) &&
-           machine.can.look_ahead_samples == 0;
+    return is_native(machine.can) && machine.can.look_ahead_samples == 0;
 }
 
 SampleFrames::SampleFrames(const Machine& machine) noexcept

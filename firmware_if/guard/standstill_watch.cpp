@@ -2,16 +2,11 @@
 #include "firmware_if/guard/standstill_watch.hpp"
 
 #include <algorithm>
-#include <array>
 
 namespace axg {
 
 StandstillRules standstill_rules(const Machine& machine) noexcept {
-    const AxisFrameSet set = make_frame_set(machine);
-    std::array<double, kAxesMax> count{};
-    std::transform(set.axes.begin(), set.axes.end(), count.begin(),
-                   [](const AxisFrameSet::AxisWire& axis) { return axis.unit; });
-    return standstill_rules(machine, count);
+    return standstill_rules(machine, axis_units(machine));
 }
 
 std::string standstill_refusal(const Machine& machine) {

@@ -316,7 +316,7 @@ const char* to_text(EncodeStatus status) noexcept {
         case EncodeStatus::ok:
             return "ok";
         case EncodeStatus::bad_layout:
-            return "the CAN layout does not fit the machine";
+            return "the CAN layout does not fit the machine (format fd: at most 13 axes)";
         case EncodeStatus::bad_snapshot:
             return "the snapshot has another number of axes than the machine";
         case EncodeStatus::out_of_range:
@@ -339,7 +339,7 @@ bool AxisEncoder::is_session_due(const AxisSnapshot& snapshot) const noexcept {
 
 EncodeResult AxisEncoder::encode(const AxisSnapshot& snapshot, std::span<CanFrame> out,
                                  const PathPoints* look_ahead) noexcept {
-    if (set_.status != LayoutStatus::ok) {
+    if (set_.axis_count == 0) {
         return {EncodeStatus::bad_layout};
     }
     if (snapshot.axis_count != set_.axis_count) {

@@ -15,13 +15,8 @@
 
 namespace axg {
 
-// Drives: separate positions and status words; signals: one a frame, and four of the board itself.
-inline constexpr std::uint32_t kAxisFramesMax = 2 * kAxesMax + 4;
-inline constexpr std::uint32_t kSignalsMax = 96;  // of all frames together
 inline constexpr std::uint32_t kFramesPerSnapshotMax =
     kAxisFramesMax + 4;  // with SYNC, heartbeat, look-ahead path and session
-inline constexpr std::uint32_t kFdAxesMax = 13;            // 12 + 4 * 13 = 64 bytes
-inline constexpr std::uint32_t kLookAheadAxesMax = 7;      // 6 + 8 * 7 = 62 bytes
 inline constexpr std::int32_t kNoPosition24 = -(1 << 23);  // marker: no position
 inline constexpr std::int32_t kNoPosition32 = INT32_MIN;
 inline constexpr double kClassicalUnitMm = 1.0e-3;  // 1 um
@@ -30,34 +25,6 @@ inline constexpr double kAngleUnitDeg = 1.0e-4;
 inline constexpr std::uint8_t kHeartbeatOperational = 5;
 inline constexpr std::int64_t kHeartbeatPeriodUs = 10000;
 inline constexpr std::int64_t kSessionPeriodUs = 100'000;
-
-/// Mismatches between a machine's axes and its CAN layout.
-enum class LayoutStatus : std::uint8_t {
-    ok,
-    no_axes,
-    too_many_axes,
-    no_sample_period,
-    too_few_ids,
-    too_few_data_ids,
-    id_out_of_range,
-    id_used_twice,
-    look_ahead_format,
-    look_ahead_axes,
-    look_ahead_samples,
-    signal_missing,
-    signal_twice,
-    signal_outside_frame,
-    signal_scale,
-    signal_frame_length,
-    signal_type,
-    signal_selector,
-    too_many_signals,
-};
-[[nodiscard]] const char* to_text(LayoutStatus status) noexcept;
-
-/// Checks that every axis has exactly one place on the bus and that all ids of the layout are
-/// 11-bit and distinct.
-[[nodiscard]] LayoutStatus check_layout(const Machine& machine) noexcept;
 
 /// Places of all values in the frames, derived once from a Machine: fixed arrays, so that coding
 /// needs no heap and no Machine.
@@ -68,9 +35,8 @@ struct AxisFrameSet {
         double unit = 0;  // mm or rad of one count on the wire (signals: |factor| in these units)
         double still_speed = 0;  // mm/s or deg/s: a drive that reports no more is at rest
     };
-    LayoutStatus status = LayoutStatus::no_axes;
     CanFormat format = CanFormat::classical;
-    std::uint32_t axis_count = 0;
+    std::uint32_t axis_count = 0;   // 0: the set is empty
     std::uint32_t frame_count = 0;  // axis frames a snapshot
     std::uint32_t sample_us = 0;
     std::uint8_t sync_counter_max = kSyncCounterMax;  // 0: SYNC is empty
@@ -91,7 +57,12 @@ struct AxisFrameSet {
     std::uint8_t look_ahead_bytes = 0;
     std::uint32_t session_id = 0;  // of the board's session frame; 0: none is read
 };
+/// @param machine  as a machine file states it: config/can checks ids, signals and look-ahead path
+/// @return         empty if the layout of another machine does not fit the arrays
 [[nodiscard]] AxisFrameSet make_frame_set(const Machine& machine) noexcept;
+
+/// mm or rad of one count of each axis on the bus; 0 in an empty set.
+[[nodiscard]] std::array<double, kAxesMax> axis_units(const Machine& machine) noexcept;
 
 /// The content of one axis frame. It has raw counts in addition to the values: tests for equality
 /// and markers use them.
@@ -156,7 +127,7 @@ struct LookAheadFrameContent {
 
 enum class EncodeStatus : std::uint8_t {
     ok,
-    bad_layout,     // reason: AxisFrameSet::status
+    bad_layout,     // the frame set is empty
     bad_snapshot,   // another number of axes than the machine
     out_of_range,   // a position does not fit its field, or is not finite
     out_too_small,  // `out` holds fewer than the frames needed

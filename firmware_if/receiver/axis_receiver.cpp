@@ -137,7 +137,7 @@ AxisReceiver::AxisReceiver(const Machine& machine, ReceiverOptions options) noex
 }
 
 void AxisReceiver::acknowledge() noexcept {
-    const bool is_fit = set_.status == LayoutStatus::ok;
+    const bool is_fit = set_.axis_count != 0;
     state_ = is_fit ? ReceiverState::init : ReceiverState::invalid;
     stop_cause_ = is_fit ? ReceiverFault::none : ReceiverFault::bad_layout;
     has_heartbeat_ = false;

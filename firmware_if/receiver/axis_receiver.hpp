@@ -138,7 +138,6 @@ class AxisReceiver {
     [[nodiscard]] ReceiverState state() const noexcept { return state_; }
     /// The fault that made it INVALID; none if it is not.
     [[nodiscard]] ReceiverFault stop_cause() const noexcept { return stop_cause_; }
-    [[nodiscard]] LayoutStatus layout_status() const noexcept { return set_.status; }
     [[nodiscard]] const ReceiverCounters& counters() const noexcept { return counters_; }
 
   private:

@@ -48,12 +48,9 @@ std::optional<ContainmentTest> make_containment_test(const LoadedMachine& loaded
 
 std::optional<StopCertificate> make_stop_certificate(const LoadedMachine& loaded,
                                                      const std::optional<CyclePlan>& plan) {
-    const AxisFrameSet set = make_frame_set(loaded.machine);
     StopOptions options;
     options.plan = plan ? *plan : cycle_plan(loaded.machine, stop_tasks(loaded.machine));
-    for (std::uint32_t i = 0; i < set.axis_count; ++i) {
-        options.count[i] = set.axes[i].unit;
-    }
+    options.count = axis_units(loaded.machine);
     return StopCertificate::create(loaded.machine, surface_list(loaded).engines, options);
 }
 

@@ -50,12 +50,11 @@ void print_native(const CheckReport& report, const AxisFrameSet& set) {
 
 void print_ids(const CheckReport& report) {
     const CanLayout& can = report.loaded.machine.can;
-    const bool is_native = can.format == CanFormat::classical || can.format == CanFormat::fd;
     fmt::print(report.words, "  from the board:");
     if (can.format != CanFormat::signals) {
         fmt::print(report.words, " SYNC 0x{:03X}", can.sync_id);
     }
-    if (is_native) {
+    if (is_native(can)) {
         fmt::print(report.words, ", heartbeat 0x{:03X}", can.heartbeat_in_id);
     }
     if (can.look_ahead_samples != 0) {

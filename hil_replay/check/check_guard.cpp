@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "core/base/sincos.hpp"
 #include "core/certificate/stop_certificate.hpp"
@@ -140,7 +141,7 @@ void report_promises(CheckReport& report) {
 
 void report_guard(CheckReport& report) {
     const Machine& machine = report.loaded.machine;
-    const AxisFrameSet set = make_frame_set(machine);
+    const std::array<double, kAxesMax> units = axis_units(machine);
     report_obeyed_by(report);
     report_promises(report);
     if (machine.guard.promise == StopPromise::path_keeping) {
@@ -159,12 +160,12 @@ void report_guard(CheckReport& report) {
         const bool rotary = axis.kind == AxisKind::rotary;
         const double unit = rotary ? 180.0 / kPi : 1.0;
         const char* name = rotary ? "deg" : "mm";
-        const double count = i < set.axis_count ? set.axes[i].unit : 0;
         const PermitSamples samples = machine.can.permit_samples;
         const auto reach_of = [&](std::uint32_t n) {
             return AxisReach{
                 .at_full_speed = reach_at_speed(machine, i, n) * unit,
-                .at_rest = reach_at_rest(machine, i, sample_errors(machine, i, count), n) * unit};
+                .at_rest =
+                    reach_at_rest(machine, i, sample_errors(machine, i, units[i]), n) * unit};
         };
         const AxisReach least = reach_of(samples.least), most = reach_of(samples.most);
         report.facts.reaches.push_back(least);

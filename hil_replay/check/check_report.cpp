@@ -102,12 +102,7 @@ double stopping_time_s(const Axis& axis) noexcept {
 }
 
 std::vector<double> blind_speeds(const Machine& machine) {
-    const AxisFrameSet set = make_frame_set(machine);
-    std::array<double, kAxesMax> count{};
-    for (std::uint32_t i = 0; i < set.axis_count; ++i) {
-        count[i] = set.axes[i].unit;
-    }
-    const LimitRules rules = limit_rules(machine, count);
+    const LimitRules rules = limit_rules(machine, axis_units(machine));
     std::vector<double> out;
     for (std::uint32_t i = 0; i < machine.axes.size(); ++i) {
         out.push_back(blind_speed(rules, i));

@@ -111,10 +111,6 @@ class TraceBuilder {
     [[nodiscard]] std::string describe(const EncodeResult& result,
                                        const MotionSample& sample) const {
         std::string text = to_text(result.status);
-        if (result.status == EncodeStatus::bad_layout) {
-            return "can: " + std::string(to_text(encoder_.frame_set().status)) +
-                   ". Correct can: in the machine file.";
-        }
         if (result.axis != kNoIndex) {
             const Axis& axis = machine_.axes[result.axis];
             const bool is_rotary = axis.kind == AxisKind::rotary;

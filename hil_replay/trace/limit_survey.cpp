@@ -33,14 +33,8 @@ double rounded(double value, bool is_up) noexcept {
 
 }  // namespace
 
-LimitSurvey::LimitSurvey(const Machine& machine) : axes_(machine.axes.size()) {
-    const AxisFrameSet set = make_frame_set(machine);
-    std::array<double, kAxesMax> count{};
-    for (std::uint32_t i = 0; i < set.axis_count; ++i) {
-        count[i] = set.axes[i].unit;
-    }
-    rules_ = limit_rules(machine, count);
-}
+LimitSurvey::LimitSurvey(const Machine& machine)
+    : rules_(limit_rules(machine, axis_units(machine))), axes_(machine.axes.size()) {}
 
 void LimitSurvey::add(const AxisSnapshot& snapshot, bool is_first) noexcept {
     if (is_first) {

@@ -21,12 +21,7 @@ class FrozenAxis {
   public:
     /// Freezes at a random one of the first samples at which an axis is fast enough.
     FrozenAxis(const Machine& machine, std::uint64_t seed) : machine_(machine), dice_(seed) {
-        const AxisFrameSet set = make_frame_set(machine);
-        std::array<double, kAxesMax> count{};
-        for (std::uint32_t i = 0; i < set.axis_count; ++i) {
-            count[i] = set.axes[i].unit;
-        }
-        const LimitRules rules = limit_rules(machine, count);
+        const LimitRules rules = limit_rules(machine, axis_units(machine));
         for (std::uint32_t i = 0; i < machine.axes.size(); ++i) {
             fast_[i] = 1.05 * blind_speed(rules, i);
         }

@@ -79,7 +79,7 @@ TEST(AxisFramesProperty, EveryPositionSurvivesTheWireToHalfACount) {
         const Machine machine = random_machine(random);
         AxisEncoder encoder(machine);
         const AxisFrameSet& set = encoder.frame_set();
-        ASSERT_EQ(set.status, LayoutStatus::ok) << to_text(set.status);
+        ASSERT_EQ(set.axis_count, machine.axes.size());
         AxisSnapshot snapshot;
         snapshot.axis_count = set.axis_count;
         snapshot.sample = random() % 100'000;

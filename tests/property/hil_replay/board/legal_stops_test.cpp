@@ -94,15 +94,6 @@ struct Watched {
     std::uint64_t excused = 0;  // samples in a stop that was harder than free motion
 };
 
-LimitRules rules_of(const Machine& machine) {
-    std::array<double, kAxesMax> count{};
-    const AxisFrameSet set = make_frame_set(machine);
-    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-        count[i] = set.axes[i].unit;
-    }
-    return limit_rules(machine, count);
-}
-
 /// One motion with its stop, as the guard sees it.
 Watched watch(const StopCase& c, const LimitRules& rules) {
     const Machine& machine = c.machine;
@@ -151,7 +142,7 @@ TEST_P(LegalStops, ShowNoBrokenLimit) {
     std::uint64_t excused = 0;
     for (std::uint64_t n = 0; n < count; ++n) {
         const StopCase c = random_stop_case(random, GetParam());
-        const Watched one = watch(c, rules_of(c.machine));
+        const Watched one = watch(c, limit_rules(c.machine, axis_units(c.machine)));
         excused += one.excused;
         ASSERT_EQ(one.fact.kind, LimitKind::none)
             << "case " << n << ": axis " << one.fact.axis << " " << to_text(one.fact.kind) << " "
@@ -176,7 +167,7 @@ unsigned accused(StopPromise promise, Change change) {
     unsigned count = 0;
     for (int n = 0; n < 200; ++n) {
         const StopCase c = random_stop_case(random, promise);
-        LimitRules rules = rules_of(c.machine);
+        LimitRules rules = limit_rules(c.machine, axis_units(c.machine));
         change(rules);
         count += watch(c, rules).fact.kind != LimitKind::none ? 1 : 0;
     }

@@ -14,7 +14,7 @@ namespace {
 TEST(MachineDrives, ProcessDataBecomeSignals) {
     Machine machine;
     ASSERT_EQ(faults_with_file(drive_machine(), kDriveEds, machine), "");
-    EXPECT_EQ(check_layout(machine), LayoutStatus::ok) << to_text(check_layout(machine));
+    EXPECT_EQ(make_frame_set(machine).axis_count, machine.axes.size());
     const CanLayout& can = machine.can;
     EXPECT_EQ(can.format, CanFormat::cia402);
     EXPECT_EQ(can.sync_counter_max, 240);
@@ -156,6 +156,9 @@ TEST(MachineDrives, EveryRefusalSaysWhatToDo) {
              Case{"{cob_id: 0x184,", "{cob_id: 0x183,",
                   "m:32: can.drives: invalid value (found 0x183 for both X and A, expected "
                   "identifiers of its own for each drive).\n"},
+             Case{"{cob_id: 0x284,", "{cob_id: 0x184,",
+                  "m:32: can.drives: invalid value (found 0x184 for both A and another PDO, "
+                  "expected identifiers of its own for each drive).\n"},
              Case{"{cob_id: 0x184,", "{cob_id: 0x080,",
                   "m:29: can.signals: invalid value (found an id that is also the one of sync, "
                   "expected an id of its own for the frames of signals).\n"},
@@ -187,6 +190,40 @@ TEST(MachineDrives, EveryRefusalSaysWhatToDo) {
     }
 }
 
+// Those of X, A and C are five. More drives have two or three each; their axes move nothing, which
+// is another fault.
+TEST(MachineDrives, ASampleHasAPlaceFor36Frames) {
+    std::string axes, drives;
+    const auto add = [&](const std::string& id, const std::string& pdos) {
+        axes += "  D" + id + ": {kind: linear, travel_mm: [-9, 9], speed_mm_min: 100, " +
+                "acceleration_mm_s2: 2000, jerk_mm_s3: none, stopping_mm_s2: 1500}\n";
+        drives += "    D" + id + ": {pdos: [" + pdos + "], counts: 1000, per_mm: 1, " +
+                  "absolute: true, velocity: {counts: 1, per_mm_s: 1}}\n";
+    };
+    const auto pdo = [](const std::string& id, const std::string& objects) {
+        return "{cob_id: 0x" + id + ", map: [" + objects + "]}";
+    };
+    const auto faults = [&] {
+        const std::string text = with(drive_machine(), "bodies:\n", axes + "bodies:\n");
+        return faults_with_file(with(text, "capacities:", drives + "capacities:"), kDriveEds);
+    };
+    for (const std::string id : {"0", "1", "2", "3", "4", "5", "6", "7", "8"}) {
+        add(id, pdo("30" + id, "0x60640020") + ", " + pdo("31" + id, "0x60410010") + ", " +
+                    pdo("32" + id, "0x606C0020"));
+    }
+    const auto add_two = [&](const std::string& id) {
+        add(id, pdo("30" + id, "0x60640020") + ", " + pdo("31" + id, "0x60410010, 0x606C0020"));
+    };
+    add_two("9");
+    add_two("A");
+    EXPECT_EQ(faults().find("can."), std::string::npos) << faults();
+    add_two("B");
+    EXPECT_NE(faults().find("can.format: invalid value (found 38 frames with positions and "
+                            "states, expected at most 36). Map the objects of a drive in fewer"),
+              std::string::npos)
+        << faults();
+}
+
 // Bit 29 of a COB-ID marks 29 bits, in object 0x1800 and so in both files.
 TEST(MachineDrives, ProcessDataMayHaveIdentifiersOf29Bits) {
     const auto written = [](const std::string& cob_id) {
@@ -194,7 +231,7 @@ TEST(MachineDrives, ProcessDataMayHaveIdentifiersOf29Bits) {
     };
     Machine machine;
     ASSERT_EQ(faults_with_file(written("0x38FF0183"), kDriveEds, machine), "");
-    EXPECT_EQ(check_layout(machine), LayoutStatus::ok) << to_text(check_layout(machine));
+    EXPECT_EQ(make_frame_set(machine).axis_count, machine.axes.size());
     EXPECT_EQ(machine.can.signals[0].id, 0x98FF0183U);
     EXPECT_EQ(faults_with_file(written("0x20000184"), kDriveEds), "") << "0x184 is A's, of 11 bits";
     const std::string wanted =

@@ -357,6 +357,19 @@ TEST(MachineFaultsSignals, LengthThatEndsTheTravelIsRefused) {
         "209.7151, expected the axis' whole travel, -300 to 300).\n");
 }
 
+// A double holds 53 bits of an integer.
+TEST(MachineFaultsSignals, BitsThatWouldRoundAreRefused) {
+    const auto with_length = [](const std::string& bits) {
+        return faults_of(with(with_signals(), "length: 32, order: little",
+                              "length: " + bits + ", order: little"));
+    };
+    EXPECT_EQ(with_length("53"), "");
+    EXPECT_EQ(
+        with_length("54"),
+        "m:31: can.signals.X.length: invalid value (found \"54\", expected an integer from 1 to "
+        "53).\n");
+}
+
 TEST(MachineFaultsSignals, AngleForALinearAxisIsRefused) {
     EXPECT_EQ(
         faults_of(with(with_signals(), "factor: 1.0e-4, unit: mm}", "factor: 1.0e-4, unit: deg}")),

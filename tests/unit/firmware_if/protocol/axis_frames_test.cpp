@@ -238,43 +238,30 @@ TEST(AxisEncoder, SaysTheSessionOfABoardOfPermitTwo) {
     }
 }
 
-TEST(CheckLayout, CountsIdsForAnyNumberOfAxes) {
+TEST(FrameSet, IsEmptyWithoutAnIdOfEachFrame) {
     Machine machine = five_axes(CanFormat::classical);
     machine.axes.push_back(machine.axes[0]);  // 6 axes and the status: four frames
-    EXPECT_EQ(check_layout(machine), LayoutStatus::too_few_ids);
+    EXPECT_EQ(make_frame_set(machine).axis_count, 0U);
     machine.can.axis_ids.push_back(0x481);
-    EXPECT_EQ(check_layout(machine), LayoutStatus::too_few_data_ids);
+    EXPECT_EQ(make_frame_set(machine).axis_count, 0U) << "a data id is missing";
     machine.can.data_ids.push_back(0x0481);
-    EXPECT_EQ(check_layout(machine), LayoutStatus::ok);
-    machine.can.axis_ids[3] = 0x104;  // the permit's twin
-    EXPECT_EQ(check_layout(machine), LayoutStatus::id_used_twice);
-    machine.can.axis_ids[3] = 0x800;
-    EXPECT_EQ(check_layout(machine), LayoutStatus::id_out_of_range);
+    EXPECT_EQ(make_frame_set(machine).frame_count, 4U);
 }
 
-// The ids of permit version 2 are the guard's and the board's where it is sent, and nowhere else.
-TEST(CheckLayout, PermitTwoHasIdsOfItsOwn) {
-    for (const std::uint32_t id : {0x583U, 0x682U, 0x584U, 0x604U}) {
-        Machine machine = five_axes(CanFormat::classical);
-        machine.can.axis_ids[0] = id;
-        EXPECT_EQ(check_layout(machine), LayoutStatus::ok);
-        EXPECT_EQ(make_frame_set(machine).session_id, 0U);
-        EXPECT_EQ(check_layout(machine), LayoutStatus::id_used_twice);
-        machine.can.axis_ids[0] = 0x181;
-        EXPECT_EQ(check_layout(machine), LayoutStatus::ok);
-        EXPECT_EQ(make_frame_set(machine).session_id, 0x583U);
-    }
+// A board with a sample counter sends its session.
+TEST(FrameSet, HasTheSessionOfABoard) {
+    EXPECT_EQ(make_frame_set(five_axes(CanFormat::classical)).session_id, 0x583U);
+    EXPECT_EQ(make_frame_set(five_axes(CanFormat::signals)).session_id, 0U);
 }
 
-TEST(CheckLayout, FdHoldsThirteenAxesAndNoMore) {
+TEST(FrameSet, OfFdHoldsThirteenAxesAndNoMore) {
     Machine machine = five_axes(CanFormat::fd);
     machine.axes.resize(13, machine.axes[0]);
-    EXPECT_EQ(check_layout(machine), LayoutStatus::ok);
     EXPECT_EQ(make_frame_set(machine).frame_bytes[0], 64);
     machine.axes.resize(14, machine.axes[0]);
-    EXPECT_EQ(check_layout(machine), LayoutStatus::too_many_axes);
+    EXPECT_EQ(make_frame_set(machine).axis_count, 0U);
     machine.axes.clear();
-    EXPECT_EQ(check_layout(machine), LayoutStatus::no_axes);
+    EXPECT_EQ(make_frame_set(machine).axis_count, 0U);
 }
 
 CanSignal signal(std::uint32_t axis, std::uint16_t start, std::uint8_t length, ByteOrder order) {
@@ -291,7 +278,6 @@ TEST(Signals, BothByteOrdersLieWhereADbcPutsThem) {
     Machine machine = five_axes(CanFormat::signals);
     machine.axes.resize(2, machine.axes[0]);
     machine.can.signals = {signal(0, 4, 12, ByteOrder::little), signal(1, 19, 12, ByteOrder::big)};
-    ASSERT_EQ(check_layout(machine), LayoutStatus::ok);
     AxisEncoder encoder(machine);
     std::array<CanFrame, kFramesPerSnapshotMax> out;
     AxisSnapshot snapshot;
@@ -310,27 +296,49 @@ TEST(Signals, BothByteOrdersLieWhereADbcPutsThem) {
     EXPECT_EQ(encoder.encode(snapshot, out).status, EncodeStatus::out_of_range);
 }
 
-TEST(Signals, ASignalMustLieInsideItsFrame) {
+// A machine file has no such signals; these lead outside an array.
+TEST(Signals, WithoutAPlaceForEachTheSetIsEmpty) {
     Machine machine = five_axes(CanFormat::signals);
     machine.axes.resize(1);
-    const auto status = [&](CanSignal s) {
-        machine.can.signals = {s};
-        return check_layout(machine);
+    const auto fits = [&](std::vector<CanSignal> signals) {
+        machine.can.signals = std::move(signals);
+        return make_frame_set(machine).axis_count != 0;
     };
-    EXPECT_EQ(status(signal(0, 32, 32, ByteOrder::little)), LayoutStatus::ok);
-    EXPECT_EQ(status(signal(0, 33, 32, ByteOrder::little)), LayoutStatus::signal_outside_frame);
-    EXPECT_EQ(status(signal(0, 39, 32, ByteOrder::big)), LayoutStatus::ok);
-    EXPECT_EQ(status(signal(0, 38, 32, ByteOrder::big)), LayoutStatus::signal_outside_frame);
-    EXPECT_EQ(status(signal(0, 0, 0, ByteOrder::little)), LayoutStatus::signal_outside_frame);
-    EXPECT_EQ(status(signal(0, 0, 54, ByteOrder::little)), LayoutStatus::signal_outside_frame);
-    EXPECT_EQ(status(signal(1, 0, 8, ByteOrder::little)), LayoutStatus::signal_missing);
-    CanSignal flat = signal(0, 0, 8, ByteOrder::little);
-    flat.factor = 0;
-    EXPECT_EQ(status(flat), LayoutStatus::signal_scale);
-    machine.can.signals = {signal(0, 0, 8, ByteOrder::little), signal(0, 8, 8, ByteOrder::little)};
-    EXPECT_EQ(check_layout(machine), LayoutStatus::signal_twice);
-    machine.can.signals.clear();
-    EXPECT_EQ(check_layout(machine), LayoutStatus::signal_missing);
+    EXPECT_TRUE(fits({signal(0, 32, 32, ByteOrder::little)}));
+    EXPECT_FALSE(fits({signal(0, 33, 32, ByteOrder::little)}));
+    EXPECT_TRUE(fits({signal(0, 39, 32, ByteOrder::big)}));
+    EXPECT_FALSE(fits({signal(0, 38, 32, ByteOrder::big)}));
+    EXPECT_FALSE(fits({signal(0, 0, 0, ByteOrder::little)}));
+    EXPECT_TRUE(fits({signal(0, 0, 53, ByteOrder::little)}));
+    EXPECT_FALSE(fits({signal(0, 0, 54, ByteOrder::little)}));
+    EXPECT_FALSE(fits({signal(1, 0, 8, ByteOrder::little)}));
+    CanSignal paged = signal(0, 0, 8, ByteOrder::little);
+    paged.selector = {.start_bit = 32, .length_bits = 32};
+    EXPECT_TRUE(fits({paged}));
+    paged.selector.start_bit = 33;
+    EXPECT_FALSE(fits({paged}));
+    paged.selector = {.start_bit = 0, .length_bits = 33};
+    EXPECT_FALSE(fits({paged}));
+    EXPECT_FALSE(fits({signal(0, 0, 8, ByteOrder::little), signal(0, 8, 8, ByteOrder::little)}))
+        << "two positions of one axis";
+    machine.axes.resize(2, machine.axes[0]);
+    EXPECT_FALSE(fits({signal(0, 0, 8, ByteOrder::little), signal(0, 8, 8, ByteOrder::little)}))
+        << "and none of the other";
+    machine.axes.resize(1);
+    EXPECT_FALSE(fits({}));
+    std::vector<CanSignal> many(kAxisFramesMax, signal(0, 0, 8, ByteOrder::little));
+    for (std::uint32_t i = 0; i < kAxisFramesMax; ++i) {
+        many[i].id += i;
+        many[i].role = i == 0 ? SignalRole::position : SignalRole::velocity;
+    }
+    EXPECT_TRUE(fits(many));
+    many.push_back(many.back());
+    EXPECT_TRUE(fits(many)) << "in a frame of another";
+    many.back().id += 1;
+    EXPECT_FALSE(fits(many));
+    many.assign(kSignalsMax + 1, many[1]);
+    many[0].role = SignalRole::position;
+    EXPECT_FALSE(fits(many));
 }
 
 }  // namespace

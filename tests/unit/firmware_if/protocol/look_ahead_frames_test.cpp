@@ -300,23 +300,16 @@ TEST(LookAheadFrame, ExtendedRemoteAndForeignFramesAreNone) {
     EXPECT_EQ(receiver.counters().foreign, 1U);
 }
 
-TEST(LookAheadLayout, WhatDoesNotFitIsSaid) {
+// The reader of machine files refuses both: a set must not lead outside its arrays all the same.
+TEST(LookAheadLayout, WhatDoesNotFitTheFrameGivesAnEmptySet) {
     Machine machine = look_ahead_machine();
-    EXPECT_EQ(check_layout(machine), LayoutStatus::ok);
-    machine.can.look_ahead_id = machine.can.axis_ids[0];
-    EXPECT_EQ(check_layout(machine), LayoutStatus::id_used_twice);
-    machine = look_ahead_machine();
-    for (const std::uint32_t samples : {kLookAheadSamplesMin - 1, kLookAheadSamplesMax + 1}) {
-        machine.can.look_ahead_samples = samples;
-        EXPECT_EQ(check_layout(machine), LayoutStatus::look_ahead_samples);
-    }
     machine.can.look_ahead_samples = kLookAheadSamplesMax;
-    EXPECT_EQ(check_layout(machine), LayoutStatus::ok);
-    machine.axes.resize(8, machine.axes[0]);
-    EXPECT_EQ(check_layout(machine), LayoutStatus::look_ahead_axes);
+    EXPECT_EQ(make_frame_set(machine).axis_count, 5U);
+    machine.can.look_ahead_samples = kLookAheadSamplesMax + 1;
+    EXPECT_EQ(make_frame_set(machine).axis_count, 0U);
     machine = look_ahead_machine();
-    machine.can.format = CanFormat::classical;
-    EXPECT_EQ(check_layout(machine), LayoutStatus::look_ahead_format);
+    machine.axes.resize(8, machine.axes[0]);
+    EXPECT_EQ(make_frame_set(machine).axis_count, 0U);
 }
 
 }  // namespace

@@ -569,7 +569,7 @@ TEST(AxisReceiver, ALayoutThatDoesNotFitNeverGivesASnapshot) {
     }
     receiver.acknowledge();
     EXPECT_EQ(receiver.state(), ReceiverState::invalid);
-    EXPECT_EQ(receiver.layout_status(), LayoutStatus::too_few_ids);
+    EXPECT_EQ(receiver.stop_cause(), ReceiverFault::bad_layout);
     EXPECT_TRUE(heard.snapshots.empty());
 }
 
