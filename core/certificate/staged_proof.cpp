@@ -346,7 +346,7 @@ bool StagedProver::run_again(const Engine& engine, std::span<const JointBoxTask>
     }
     for (const BoxItem& item : items_.first(open)) {  // one of each task
         const GroupWork& group = groups_[group_of_[item.task]];
-        left_[item.task] = left_of(group.share, group.used);
+        left_[item.task] = unused_of(group.share, group.used);
         add(work.used, group.used);
     }
     open = leave_open(results, open);

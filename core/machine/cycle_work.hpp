@@ -54,7 +54,8 @@ struct GroupWork {
 }
 
 /// The unused entries of each list.
-[[nodiscard]] constexpr WorkLists left_of(const WorkLists& lists, const WorkLists& used) noexcept {
+[[nodiscard]] constexpr WorkLists unused_of(const WorkLists& lists,
+                                            const WorkLists& used) noexcept {
     const auto left = [](std::uint32_t of, std::uint32_t without) {
         return of > without ? of - without : 0;
     };
@@ -170,11 +171,13 @@ inline constexpr std::uint32_t kRoundsMax = 4;
 [[nodiscard]] constexpr bool asks_again(std::uint32_t stage, const CyclePlan& plan) noexcept {
     return stage == 1 && plan.stages == 3;
 }
+/// The lists of the second of three stages: a quarter for the boxes that are queried once more, the
+/// rest for their parts.
 [[nodiscard]] constexpr WorkLists lists_of_whole_boxes(const CyclePlan& plan) noexcept {
     return share_of(plan.lists[1], 4);
 }
 [[nodiscard]] constexpr WorkLists lists_of_rounds(const CyclePlan& plan) noexcept {
-    return left_of(plan.lists[1], lists_of_whole_boxes(plan));
+    return unused_of(plan.lists[1], lists_of_whole_boxes(plan));
 }
 
 /// The second of three stages queries this many times fewer boxes. If all of them stay open, the
