@@ -67,11 +67,13 @@ void print_ids(const CheckReport& report) {
         fmt::print(report.words, ", session 0x{:03X}, operator 0x{:03X}", can.session_in_id,
                    can.operator_in_id);
     }
-    fmt::print(report.words,
-               "\n  from the guard: permit 0x{:03X} and 0x{:03X}, stop 0x{:03X}, emergency "
-               "0x{:03X}, heartbeat 0x{:03X}",
-               can.permit_id, can.permit_id + 1, can.stop_id, can.emergency_id,
-               can.heartbeat_out_id);
+    fmt::print(report.words, "\n  from the guard:");
+    if (has_sample_counter(can)) {
+        fmt::print(report.words, " permit 0x{:03X} and 0x{:03X},", can.permit_id,
+                   can.permit_id + 1);
+    }
+    fmt::print(report.words, " stop 0x{:03X}, emergency 0x{:03X}, heartbeat 0x{:03X}", can.stop_id,
+               can.emergency_id, can.heartbeat_out_id);
     if (can.hashes_out_id != 0) {
         fmt::print(report.words, ", hashes 0x{:03X}", can.hashes_out_id);
     }

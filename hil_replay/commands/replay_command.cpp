@@ -132,13 +132,15 @@ bool write_outputs(const ReplayArguments& arguments, const ReplayReport& report,
 }
 
 /// Feeds the trace, up to the first stop that ends it.
-TraceEnd feed(TraceReader& trace, ReplayRun& run) {
+TraceEnd feed(TraceReader& trace, ReplayRun& run, std::optional<AddedSession> added) {
     Progress progress;
     CanFrame frame;
     std::optional<std::int64_t> first_us;
     bool goes_on = true;
     while (goes_on && trace.next(frame)) {
         goes_on = run.on_frame(frame);
+        const std::optional<CanFrame> session = added ? added->behind(frame) : std::nullopt;
+        goes_on = goes_on && (!session || run.on_added(*session));
         first_us = first_us.value_or(frame.time_us);
         if (run.frame_count() % 4096 == 0 && progress.is_due()) {
             progress.show(static_cast<double>(frame.time_us - *first_us) * 1e-6, trace.share(),
@@ -257,18 +259,17 @@ ProgramLines lines_of(const ReplayArguments& arguments, Outputs& outputs) {
     return lines;
 }
 
-/// Takes period and format from the trace, and adds the session of a board that sends none.
-/// @return  null with a message in `fault`
+/// Takes period and format from the trace.
+/// @return  null with a message in TraceShape::fault
 std::unique_ptr<TraceReader> open_shaped(const ReplayArguments& arguments, Machine& machine,
-                                         TracePeriod& period, std::string& fault) {
+                                         TraceShape& shape) {
     const TraceOptions options{.lenient = arguments.lenient, .device = arguments.device};
-    const TraceShape shape = take_trace_shape(arguments.trace, options, machine);
-    period = shape.period;
-    fault = shape.fault;
-    std::unique_ptr<TraceReader> trace =
-        fault.empty() ? open_trace(arguments.trace, options, fault) : nullptr;
-    return trace && shape.lacks_session ? with_session(std::move(trace), machine.can)
-                                        : std::move(trace);
+    shape = take_trace_shape(arguments.trace, options, machine);
+    return shape.fault.empty() ? open_trace(arguments.trace, options, shape.fault) : nullptr;
+}
+
+std::optional<AddedSession> added_session(const TraceShape& shape, const CanLayout& can) {
+    return shape.lacks_session ? std::optional(AddedSession(can)) : std::nullopt;
 }
 
 int replay(const ReplayArguments& arguments, const ReplayObserver& observer) {
@@ -282,13 +283,11 @@ int replay(const ReplayArguments& arguments, const ReplayObserver& observer) {
     if (arguments.is_realtime && arguments.deadline_us != 0) {  // the guard judges by it
         loaded.machine.deadline_us = static_cast<std::uint32_t>(arguments.deadline_us);
     }
-    TracePeriod period;
-    std::string trace_error;
-    const std::unique_ptr<TraceReader> trace =
-        open_shaped(arguments, loaded.machine, period, trace_error);
+    TraceShape shape;
+    const std::unique_ptr<TraceReader> trace = open_shaped(arguments, loaded.machine, shape);
     if (!trace) {
-        fmt::print(stderr, "{}\n", trace_error);
-        return write_json(arguments.json, describe_unread(arguments.trace, trace_error))
+        fmt::print(stderr, "{}\n", shape.fault);
+        return write_json(arguments.json, describe_unread(arguments.trace, shape.fault))
                    ? exit_code_of_unopened(arguments.trace)
                    : static_cast<int>(kExitInternal);
     }
@@ -314,7 +313,7 @@ int replay(const ReplayArguments& arguments, const ReplayObserver& observer) {
     }
     ReplayRun run(loaded.machine, chosen.engine(engine), *parts.containment_test, run_options,
                   observe);
-    const TraceEnd end = feed(*trace, run);
+    const TraceEnd end = feed(*trace, run, added_session(shape, loaded.machine.can));
     if (!end.fault.empty()) {
         fmt::print(stderr, "{}\n", end.fault);
     }
@@ -330,7 +329,7 @@ int replay(const ReplayArguments& arguments, const ReplayObserver& observer) {
                         arguments.is_realtime,
                         end,
                         std::move(lines),
-                        period};
+                        shape.period};
     explain_stops(report);
     print_replay(report, detail_of(arguments.has_details), arguments.json.words());
     if (observer) {

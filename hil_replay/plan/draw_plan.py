@@ -4,7 +4,7 @@
 Time of a cycle, and how much earlier stops come, against the inflation of a model.
 """
 from figure_page import BLUE, GREEN, PX, RED, draw, wide_page  # first: ends without matplotlib
-from matplotlib.ticker import LogLocator
+from matplotlib.ticker import LogLocator, NullFormatter
 
 
 def plan_page(rows, scene):
@@ -27,6 +27,7 @@ def plan_page(rows, scene):
              ylabel="us a cycle")
     axes.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
     axes.yaxis.set_major_formatter("{x:g}")
+    axes.yaxis.set_minor_formatter(NullFormatter())
     right.set_ylim(0)
     right.set_ylabel("a stop comes so much earlier, mm of way (median)", color=RED)
     right.tick_params(color=RED, labelcolor=RED)

@@ -42,7 +42,7 @@ std::string exceeded_text(const ReplayReport& report) {
 std::string proven_text(const ReplayReport& report) {
     const ReplayRun& run = report.run;
     if (!obeyed_by_refusal(report.loaded.machine).empty()) {
-        return fmt::format("{} permits sent, obeyed by no device", run.permits());
+        return fmt::format("{} permits given, obeyed by no device", run.permits());
     }
     return fmt::format(
         "{} of {} samples proven{}{}", run.proven(), run.cycles().count(),

@@ -134,6 +134,11 @@ class ReplayRun {
     /// Processes one frame; call in order of time. False: the guard stopped without keep_going, and
     /// kAfterStopUs are over.
     [[nodiscard]] bool on_frame(const CanFrame& frame);
+    /// The same for a frame that the trace does not contain.
+    [[nodiscard]] bool on_added(const CanFrame& frame) {
+        --frame_count_;
+        return on_frame(frame);
+    }
     /// Call after the last frame: sends the remaining frames of a stop, and checks whether the axes
     /// were moving.
     void finish();

@@ -93,11 +93,8 @@ bool has_flexible_axes(TraceReader& trace, std::uint32_t axis_id) {
 }
 
 bool has_session_frames(TraceReader& trace, std::uint32_t session_id) {
-    constexpr std::int64_t kLookUs = 1'000'000;  // ten session frames
     CanFrame frame;
-    std::optional<std::int64_t> first_us;
-    while (trace.next(frame) && frame.time_us - first_us.value_or(frame.time_us) <= kLookUs) {
-        first_us = first_us.value_or(frame.time_us);
+    while (trace.next(frame)) {
         Session session;
         if (decode_session(session_id, frame, session) == FrameStatus::ok) {
             return true;

@@ -32,14 +32,14 @@ struct TracePeriod {
 /// thousand frames of the trace. Reads it forward, as trace_period_us does.
 [[nodiscard]] bool has_flexible_axes(TraceReader& trace, std::uint32_t axis_id);
 
-/// Whether a board in the trace sends its session on this id: judged by the first second. Reads it
-/// forward, as trace_period_us does.
+/// Whether a board in the trace sends its session on this id: it may begin late. Reads the trace up
+/// to that frame, as trace_period_us does.
 [[nodiscard]] bool has_session_frames(TraceReader& trace, std::uint32_t session_id);
 
 struct TraceShape {
     std::string fault{};  // empty, or why the trace cannot be read
     TracePeriod period{};
-    bool lacks_session = false;  // the machine's boards send one, see with_session
+    bool lacks_session = false;  // the machine's boards send one, see AddedSession
 };
 /// Sets period and frame format in `machine` from the trace: simulate --sample-us and --fd may
 /// differ from the machine file. Prints the changes on stderr, whether a live guard would refuse
