@@ -3,7 +3,7 @@
 // beside it, which the ladder chooses.
 // Claim: the proofs of the cycle hold for the n that it takes. Proof: docs/theory/certificate.md,
 // "The certificate": a longer permit covers every motion of a shorter one. Tests:
-// stop_certificate_test, permit_ladder in longer_permit_test.
+// stop_certificate_test (SamplesAreTriedFromALadder...).
 #pragma once
 
 #include <algorithm>

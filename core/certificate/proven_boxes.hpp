@@ -2,7 +2,7 @@
 // The box in which each pair was proven last. While the axes stay in it, no body can be inside the
 // other: its surface would have had to cross the other's. Elsewhere the pair is tested.
 // Claim: a pair with Containment::none has no part of one body inside the other. Proof:
-// docs/theory/certificate.md, "Contact is not only of surfaces". Tests: stop_certificate_test,
+// docs/theory/certificate.md, "Containment". Tests: stop_certificate_test,
 // stop_certificate_path_test.
 #pragma once
 

@@ -52,7 +52,7 @@ void put_mm(Line& line, const char* key, double value_mm) {
     line.put(",\"{}\":{:.4f}", key, value_mm);
 }
 
-/// In the words of docs/reference/json.md, "why"; null: of another kind of reach.
+/// Keys of "why" in docs/reference/json.md; null: of another kind of reach.
 void put_parts(Line& line, const PairWhy& why) {
     const DistanceNeed& need = why.distances.need;
     const std::array<std::pair<const char*, double>, 4> parts{

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Links between pages lead somewhere, headings included, and so do the pages that comments name.
+"""Links between pages lead somewhere, headings included; pages, sections and tests that comments
+name exist.
 
 Every page of a shelf is linked from the shelf's index."""
 import pathlib
@@ -8,12 +9,15 @@ import posixpath
 import re
 import sys
 
-from sources import finish, is_code, read_text, tracked_files
+from sources import finish, is_code, is_cpp, read_text, tracked_files
 
 LINK = re.compile(r"\]\((?!https?://|mailto:)([^)#\s]*)(?:#([^)]*))?\)")
 SHELF_PAGE = re.compile(r"docs/[a-z]+/[^/]+\.md$")
 FENCE = re.compile(r"^(`{3,}|~{3,}).*?^\1\s*$", re.S | re.M)
 PAGE = re.compile(r"(?<![\w./])docs/[a-z0-9_/-]+\.md")
+COMMENT = re.compile(r"(?:^[ \t]*//[^\n]*\n)+", re.M)
+SECTIONS = re.compile(rf"({PAGE.pattern}), (\"[^\"]+\"(?:(?:,| and) \"[^\"]+\")*)")
+TESTS = re.compile(r"\bTests: ([^.]*)\.")
 
 
 def without_fences(text):
@@ -45,6 +49,30 @@ def targets(name, text):
                 yield number, match.group(), None
 
 
+def sections(text):
+    """(line, page, section) of every section that a comment names: docs/PAGE.md, "SECTION"."""
+    for block in COMMENT.finditer(text):
+        line = text.count("\n", 0, block.start()) + 1
+        for match in SECTIONS.finditer(re.sub(r"\n[ \t]*//[/!]?<? ?", " ", block.group())):
+            for section in re.findall(r'"([^"]+)"', match.group(2)):
+                yield line, match.group(1), section
+
+
+def has_section(page, section):
+    """Of a heading, a point in bold or one of a table's first column; numbers are left out."""
+    opens = r"(?m)^(?:#+ +|[ \t]*(?:[-*] )?\*\*|\| `?)(?:\d+\.? )?"
+    return re.search(opens + re.escape(section), page) is not None
+
+
+def named_tests(text):
+    """(line, test) of every "Tests: ONE_test, OTHER_test." in a comment."""
+    for block in COMMENT.finditer(text):
+        line = text.count("\n", 0, block.start()) + 1
+        for match in TESTS.finditer(re.sub(r"\n[ \t]*//[/!]?<? ?", " ", block.group())):
+            for name in re.findall(r"\b\w+_tests?\b", match.group(1)):
+                yield line, name
+
+
 def fault_of(root, target, heading):
     if not (root / target).exists():
         return f"{target} is not there"
@@ -71,6 +99,15 @@ def main():
         for number, target, heading in targets(name, text):
             fault = fault_of(root, target, heading)
             faults += [f"{name}:{number}: {fault}"] if fault else []
+    tests = {pathlib.PurePath(name).stem for name in texts if name.startswith("tests/")}
+    for name, text in texts.items():
+        if not is_cpp(name):
+            continue
+        faults += [f"{name}:{line}: {page} has no section \"{section}\""
+                   for line, page, section in sections(text)
+                   if not has_section(texts.get(page, ""), section)]
+        faults += [f"{name}:{line}: no test is called {test}"
+                   for line, test in named_tests(text) if test not in tests]
     finish(faults + list(unlinked(texts)))
 
 

@@ -300,6 +300,16 @@ def links_are_found():
             {"docs/guide/index.md": index, "docs/guide/a.md": ""}))) == bad)
 
 
+def sections_and_tests_are_found():
+    text = '// Source: docs/p.md, "A b" and\n// "C". Tests: x_test,\n// y_test.\nint z_test;\n'
+    expect("links: sections", list(links.sections(text)) == [(1, "docs/p.md", "A b"),
+                                                             (1, "docs/p.md", "C")])
+    expect("links: tests", list(links.named_tests(text)) == [(1, "x_test"), (1, "y_test")])
+    for page, has in [("## A b\n", True), ("## 2. A b\n", True), ("- **A b** is\n", True),
+                      ("| `A b` |\n", True), ("of A b\n", False), ("## Not A b\n", False)]:
+        expect(f"links: has_section {page!r}", links.has_section(page, "A b") == has)
+
+
 def comments_notice():
     for text, bad in [
             ("// It knows nothing.\n", True), ("// The known-answer test.\n", False),
@@ -514,6 +524,7 @@ def main():
     readme_example_notices()
     guide_blocks_name_user_and_mark()
     links_are_found()
+    sections_and_tests_are_found()
     comments_notice()
     commits_notice()
     words_notice()
