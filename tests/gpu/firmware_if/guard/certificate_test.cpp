@@ -138,11 +138,13 @@ std::optional<CudaEngine> roomy_engine(const LoadedMachine& loaded, std::string&
     }
 
 TEST_F(CudaCertificate, WithLongListsPairsAreDecidedAlike) {
-    paper.loaded.machine.cycle.lists = {1U << 22U, 1U << 22U, 1U << 26U, 1U << 26U, 0};
+    // A whole box has a quarter of a stage's list, shared by all boxes left open, and the GPU counts
+    // on behind the first contact: with 2^26 pairs of triangles 179 pairs are full, with 2^28 four.
+    paper.loaded.machine.cycle.lists = {1U << 22U, 1U << 22U, 1U << 26U, 1U << 29U, 0};
     AXG_GPU_OR_SKIP(gpu);
     const Tally tally = compare(*gpu, "long lists", 20261128);
     EXPECT_EQ(tally.contradictions, 0U);
-    EXPECT_LT(100 * tally.full, tally.neither);
+    EXPECT_EQ(tally.full, 0U);
     EXPECT_GT(20 * tally.neither, count) << "near contact often enough";
     EXPECT_GT(tally.both, count);
 }
