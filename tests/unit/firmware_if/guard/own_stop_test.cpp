@@ -94,8 +94,13 @@ TEST_F(OwnStop, APersonArmsTheBoardAndThenTheGuard) {
 TEST_F(OwnStop, WithoutASessionNobodyArms) {
     world.stands_still = true;
     stop_of_the_board(20);
+    world.run_periods(200);
+    ASSERT_EQ(guard().phase, GuardPhase::ready);
     world.says_session = [](SessionSays&) { return false; };
-    world.run_periods(500);
+    for (int i = 0; i < 500; ++i) {  // at first still ready, with a sample that has no session
+        world.run_periods(1);
+        EXPECT_FALSE(world.guard->may_arm(world.wire.now_us)) << i;
+    }
     world.guard->arm(world.wire.now_us);
     EXPECT_NE(guard().phase, GuardPhase::armed);
 }
