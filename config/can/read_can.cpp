@@ -150,7 +150,7 @@ void read_single_ids(const YamlNode& node, std::size_t frames, MachineDraft& dra
 
 void read_frame_ids(MapReader& reader, MachineDraft& draft) {
     CanLayout& can = draft.machine.can;
-    const std::size_t frames = own_axis_frames(can.format, draft.machine.axes.size());
+    const std::size_t frames = own_axis_frames(wire_of(can), draft.machine.axes.size());
     const YamlNode* ids = reader.find("ids", Need::optional, "a map of identifiers");
     bool axes_written = false;
     if (ids != nullptr) {
@@ -222,7 +222,7 @@ void read_look_ahead(MapReader& can_reader, MachineDraft& draft) {
     }
     reader.whole("samples", Need::required, {kLookAheadSamplesMin, kLookAheadSamplesMax},
                  can.look_ahead_samples);
-    if (can.format != CanFormat::fd) {
+    if (!wire_of(can).has_look_ahead) {
         can_reader.report("ahead", "can.ahead with a format other than fd",
                           "format: fd, or no such key; the frame has 48 bytes for five axes");
     } else if (draft.machine.axes.size() > kLookAheadAxesMax) {
@@ -246,7 +246,7 @@ void read_arrival_jitter(MapReader& reader, CanLayout& can) {
     constexpr std::uint32_t kJitterShare = 4;
     const std::uint32_t most_us = can.sample_us / kJitterShare;
     if (reader.whole("arrival_jitter_us", Need::optional, {1, most_us}, can.arrival_jitter_us) &&
-        can.format != CanFormat::signals) {
+        has_sync(wire_of(can))) {
         reader.report("arrival_jitter_us", "arrival_jitter_us with frames that follow SYNC",
                       "format: signals or dbc, or no such key");
     }
@@ -289,9 +289,8 @@ bool read_ends(MapReader& reader, const char* key, WholeRange range, FaultList& 
 
 void read_permit_samples(MapReader& reader, MachineDraft& draft) {
     CanLayout& can = draft.machine.can;
-    // A hole of 9 classical samples counts as late already, and one of 16 looks like none. With one
-    // sample no permit is ever a period ahead of its end.
-    const WholeRange range{2, can.format == CanFormat::classical ? 12U : 15U};
+    // With one sample no permit is ever a period ahead of its end.
+    const WholeRange range{2, wire_of(can).permit_samples_most};
     can.permit_samples = !has_sample_counter(can)      ? PermitSamples{}
                          : can.look_ahead_samples != 0 ? kPermitSamplesLonger
                                                        : kPermitSamplesUsual;
@@ -311,10 +310,9 @@ void read_permit_samples(MapReader& reader, MachineDraft& draft) {
     }
 }
 
-/// A board stamps at the latch; a drive may answer with the value of the SYNC before.
 void read_latched_age(MapReader& reader, MachineDraft& draft) {
     CanLayout& can = draft.machine.can;
-    can.latched_age = {0, can.format == CanFormat::cia402 ? can.sample_us : 0};
+    can.latched_age = {0, wire_of(can).latched_age_samples * can.sample_us};
     std::array<std::uint32_t, 2> ends{};
     draft.machine.states.latched_age_us = read_ends(
         reader, "latched_age_us", {0, kAgePeriodsMax * can.sample_us}, draft.faults, ends);
@@ -324,10 +322,9 @@ void read_latched_age(MapReader& reader, MachineDraft& draft) {
 }
 
 void read_receiver_rules(MapReader& reader, CanLayout& can) {
-    // A snapshot is of no use when the longest permit for it has run out. A frame of a drive that
-    // is lost costs its sample and the next: docs/reference/protocol.md.
-    const std::uint32_t least = can.format == CanFormat::cia402 ? 4 : 3;
-    can.stale_after_us = std::max(least, std::uint32_t{can.permit_samples.most}) * can.sample_us;
+    // A snapshot is of no use when the longest permit for it has run out.
+    const std::uint8_t least = wire_of(can).stale_samples_least;
+    can.stale_after_us = std::max(least, can.permit_samples.most) * can.sample_us;
     if (reader.whole("stale_after_us", Need::optional, {50, 1'000'000}, can.stale_after_us) &&
         can.stale_after_us < can.sample_us) {
         reader.report("stale_after_us", std::to_string(can.stale_after_us),

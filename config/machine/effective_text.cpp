@@ -164,7 +164,7 @@ void add_can(Lines& lines, const CanLayout& can) {
         lines.add("can.ahead.data_id", can.look_ahead_data_id);
         lines.add("can.ahead.samples", can.look_ahead_samples);
     }
-    if (can.format == CanFormat::cia402) {
+    if (wire_of(can).mark == SampleMark::sync) {
         lines.add("can.sync_counter", can.sync_counter_max);
         if (can.guard_sends_sync) {
             lines.add("can.guard_sends_sync", 1U);

@@ -249,10 +249,10 @@ void fill_can(YamlNode& map, const CanLayout& can) {
             fill(entry.value, "offset", value_of(0U));
         }
     }
-    if (can.format == CanFormat::signals) {
+    if (!has_sync(wire_of(can))) {
         fill_none(map, {"arrival_jitter_us"});
     }
-    if (can.format == CanFormat::cia402) {
+    if (wire_of(can).mark == SampleMark::sync) {
         fill(map, "sync", value_of(can.guard_sends_sync ? "guard" : "board"));
         fill(map, "sync_counter", value_of(std::uint32_t{can.sync_counter_max}));
         fill(map, "sync_window_us", value_of(can.sync_window_us));

@@ -46,8 +46,7 @@ void read_jog(MapReader& guard_reader, MachineDraft& draft) {
     if (section == nullptr) {
         return;
     }
-    const CanFormat format = draft.machine.can.format;
-    if (format != CanFormat::classical && format != CanFormat::fd) {
+    if (!is_native(draft.machine.can)) {
         guard_reader.report(
             "single_jog", "a jog with frames of another format",
             "can.format classical or fd; other formats do not name the axis that may move");

@@ -40,22 +40,6 @@ bool is_quiet(const StandstillRules& rules, const AxisSnapshot& snapshot) noexce
     return quiet;
 }
 
-/// Whether the frames themselves report motion: by a mode, or by the speeds of all axes.
-bool reports_motion(const Machine& machine) noexcept {
-    const CanLayout& can = machine.can;
-    if (is_native(can)) {
-        return true;
-    }
-    std::uint32_t with_speed = 0;
-    for (const CanSignal& signal : can.signals) {
-        if (signal.role == SignalRole::moving) {
-            return true;
-        }
-        with_speed |= signal.role == SignalRole::velocity ? 1U << signal.axis : 0U;
-    }
-    return with_speed == (1U << machine.axes.size()) - 1U;
-}
-
 /// Returns the position without the jump of an endless axis at the seam of its turn.
 double unwrapped(Standstill& s, const StandstillRules& rules, const AxisSnapshot& snapshot,
                  std::uint32_t axis) noexcept {
@@ -73,8 +57,8 @@ StandstillRules standstill_rules(const Machine& machine, std::span<const double>
     AXG_ASSERT(count.size() >= machine.axes.size());
     StandstillRules out;
     const double period_s = machine.can.sample_us * 1e-6;
-    const bool is_told = reports_motion(machine);
-    bool is_seen = is_told || machine.can.format == CanFormat::signals;
+    const bool is_told = reports_motion(machine.can, machine.axes.size());
+    bool is_seen = is_told || wire_of(machine.can).rest == RestReport::optional;
     out.axis_count = static_cast<std::uint32_t>(machine.axes.size());
     out.gap_samples_max = period_s > kHolesPeriodS ? 1 : 1 + kHoleSamples;
     out.age_us_max = machine.can.stale_after_us;

@@ -9,20 +9,16 @@
 #include <vector>
 
 #include "core/base/limits.hpp"
+#include "core/machine/wire_format.hpp"
 
 namespace axg {
 
-inline constexpr std::uint8_t kSyncCounterMax = 240;   // CANopen object 0x1019
-inline constexpr std::uint32_t kFdAxesMax = 13;        // 12 + 4 * 13 = 64 bytes
 inline constexpr std::uint32_t kLookAheadAxesMax = 7;  // 6 + 8 * 7 = 62 bytes
 inline constexpr std::uint32_t kSignalsMax = 96;       // of all frames together
 // Axis frames of a sample. Drives: separate positions and status words; signals: one a frame, and
 // four of the board itself.
 inline constexpr std::uint32_t kAxisFramesMax = 2 * kAxesMax + 4;
 
-// classical and fd are ours; signals are frames of other makers without SYNC (a DBC file, or
-// written in the machine file); cia402 are the process data of drives, all latched by one SYNC.
-enum class CanFormat : std::uint8_t { classical, fd, signals, cia402 };
 enum class ByteOrder : std::uint8_t { little, big };
 enum class SignalType : std::uint8_t { integer, float32, float64 };  // IEEE 754
 
@@ -92,7 +88,7 @@ struct ValueAge {
 
 /// Ids default to docs/reference/protocol.md: motion board = node 1, guard = node 2.
 struct CanLayout {
-    CanFormat format = CanFormat::classical;
+    CanFormat format{};              // see wire_of
     std::uint32_t sample_us = 1000;  // the board's period T
     std::uint32_t sync_id = 0x080;
     std::vector<std::uint32_t> axis_ids{0x181, 0x281, 0x381};  // classical: in slot order; fd: one
@@ -132,16 +128,11 @@ struct CanLayout {
     std::uint32_t heartbeat_timeout_us = 65'000;  // of the board; formats of our own only
 };
 
-/// Whether the frames are of our own making: counter, checksum, SYNC, heartbeat.
-[[nodiscard]] inline bool is_native(const CanLayout& can) noexcept {
-    return can.format == CanFormat::classical || can.format == CanFormat::fd;
+[[nodiscard]] inline const WireFormat& wire_of(const CanLayout& can) noexcept {
+    return wire_format(can.format);
 }
-
-/// Axis frames of our own formats. Classical ones have two slots: an axis each, then the status.
-[[nodiscard]] constexpr std::uint32_t own_axis_frames(CanFormat format,
-                                                      std::size_t axis_count) noexcept {
-    return format == CanFormat::classical ? static_cast<std::uint32_t>((axis_count + 2) / 2)
-                                          : format == CanFormat::fd;
+[[nodiscard]] inline bool is_native(const CanLayout& can) noexcept {
+    return is_native(wire_of(can));
 }
 
 /// Frames that carry the signals: one for each id and selector.
@@ -159,13 +150,31 @@ struct CanLayout {
 /// have no SYNC, and a counter that wraps earlier gives an old permit the number of a new sample.
 /// The guard then sends no permits, and the board has no session.
 [[nodiscard]] inline bool has_sample_counter(const CanLayout& can) noexcept {
-    return can.format != CanFormat::signals && can.sync_counter_max == kSyncCounterMax;
+    return has_sync(wire_of(can)) && can.sync_counter_max == kSyncCounterMax;
 }
 
-/// Format signals: the time between two samples may be off by this. Without a stated limit of
-/// jitter two samples may be numbered a period short (firmware_if/receiver/arrival_anchor.hpp).
+/// The time between two samples may be off by this where their arrival dates them; 0: SYNC does.
+/// Without a stated limit of jitter two samples may be numbered a period short
+/// (firmware_if/receiver/arrival_anchor.hpp).
 [[nodiscard]] inline std::uint32_t arrival_jitter_us_of(const CanLayout& can) noexcept {
-    return can.arrival_jitter_us != 0 ? can.arrival_jitter_us : 2 * can.sample_us;
+    const std::uint32_t limit_us =
+        can.arrival_jitter_us != 0 ? can.arrival_jitter_us : 2 * can.sample_us;
+    return has_sync(wire_of(can)) ? 0 : limit_us;
+}
+
+/// Whether the frames themselves report motion: by a mode, or by the speeds of all axes.
+[[nodiscard]] inline bool reports_motion(const CanLayout& can, std::size_t axis_count) noexcept {
+    if (wire_of(can).rest == RestReport::mode) {
+        return true;
+    }
+    std::uint32_t with_speed = 0;
+    for (const CanSignal& signal : can.signals) {
+        if (signal.role == SignalRole::moving) {
+            return true;
+        }
+        with_speed |= signal.role == SignalRole::velocity ? 1U << signal.axis : 0U;
+    }
+    return with_speed == (1U << axis_count) - 1U;
 }
 
 }  // namespace axg

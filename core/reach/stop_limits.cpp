@@ -13,13 +13,14 @@ constexpr double kUp = 1.0 + 0x1p-40;  // exceeds the roundings of any formula b
 /// Largest error of the time between two latches.
 double latch_jitter_seconds(const Machine& machine) noexcept {
     const double stated_s = machine.guard.latch_jitter_s;
-    if (machine.can.format != CanFormat::signals) {
+    const std::uint32_t jitter_us = arrival_jitter_us_of(machine.can);
+    if (jitter_us == 0) {
         return stated_s;
     }
-    // Frames of signals carry no instant. It has the error of their arrival jitter, and the anchor
-    // that numbers them may be off by the share of a period.
+    // An instant by arrival has the error of that jitter, and the anchor that numbers arrivals may
+    // be off by the share of a period.
     const double period_s = machine.can.sample_us * 1e-6;
-    return std::max(stated_s, arrival_jitter_us_of(machine.can) * 1e-6 + period_s * kPeriodShare);
+    return std::max(stated_s, jitter_us * 1e-6 + period_s * kPeriodShare);
 }
 
 }  // namespace

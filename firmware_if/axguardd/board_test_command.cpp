@@ -283,8 +283,7 @@ int run_board_test(BoardTestArguments& arguments) {
         fmt::print(stderr,
                    "axguardd: {}: the board does not read permits (found can.format {}, expected "
                    "classical or fd)\n",
-                   arguments.machine.file,
-                   loaded.machine.can.format == CanFormat::cia402 ? "cia402" : "signals");
+                   arguments.machine.file, wire_of(loaded.machine.can).name);
         return kExitInput;
     }
     return may_run(arguments.machine.file, loaded.machine) ? test_board(arguments, loaded)

@@ -20,7 +20,7 @@ std::uint32_t live_ids(const Machine& machine, std::span<std::uint32_t> out) noe
     if (set.look_ahead_samples != 0) {
         add(set.look_ahead_id);
     }
-    if (set.format != CanFormat::signals) {
+    if (has_sync(wire_of(can))) {
         add(can.sync_id);
         add(can.heartbeat_in_id);
     }

@@ -19,7 +19,7 @@ std::string standstill_refusal(const Machine& machine) {
             return signal.role == SignalRole::velocity && signal.axis == i;
         };
         const auto& signals = machine.can.signals;
-        if (machine.can.format == CanFormat::cia402 &&
+        if (wire_of(machine.can).rest == RestReport::speeds &&
             std::none_of(signals.begin(), signals.end(), is_velocity)) {
             missing += (missing.empty() ? "" : ", ") + machine.axes[i].name;
         }

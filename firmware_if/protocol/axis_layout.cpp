@@ -53,7 +53,7 @@ bool fits_set(const Machine& machine) noexcept {
         return false;
     }
     if (is_native(can)) {
-        const std::size_t frames = own_axis_frames(can.format, axes);
+        const std::size_t frames = own_axis_frames(wire_of(can), axes);
         const bool is_fd = can.format == CanFormat::fd;
         const bool has_room = can.look_ahead_samples != 0 ? is_fd && axes <= kLookAheadAxesMax
                                                           : !is_fd || axes <= kFdAxesMax;
@@ -148,7 +148,7 @@ AxisFrameSet make_frame_set(const Machine& machine) noexcept {
         fill_signals(machine, set);
         return set;
     }
-    set.frame_count = own_axis_frames(can.format, set.axis_count);
+    set.frame_count = own_axis_frames(wire_of(can), set.axis_count);
     const bool is_fd = can.format == CanFormat::fd;
     for (std::uint32_t i = 0; i < set.frame_count; ++i) {
         set.frame_bytes[i] = is_fd ? fd_length(12 + 4 * set.axis_count) : 8;

@@ -7,7 +7,7 @@ namespace axg {
 namespace {
 
 std::string without_counter(const CanLayout& can) {
-    if (can.format != CanFormat::cia402) {
+    if (!has_sync(wire_of(can))) {
         return "no board can obey these permits: axguard reads these frames without SYNC, so a "
                "permit names no sample and has no end (expected a SYNC counter 1 to 240). Use "
                "can.format: classical or fd, or cia402 with sync_counter: 240.";

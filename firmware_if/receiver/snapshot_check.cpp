@@ -25,9 +25,7 @@ SnapshotCheck::SnapshotCheck(const Machine& machine, const AxisFrameSet& set,
       period_s_(set.sample_us * 1.0e-6),
       // Frames without an instant may be so late, as sample_errors() supposes.
       latch_jitter_s_(
-          (machine.can.format == CanFormat::signals
-               ? std::max(machine.guard.latch_jitter_s, arrival_jitter_us_of(machine.can) * 1e-6)
-               : machine.guard.latch_jitter_s) +
+          std::max(machine.guard.latch_jitter_s, arrival_jitter_us_of(machine.can) * 1e-6) +
           age_seconds(machine).spread),
       frozen_max_(std::max<std::uint32_t>(1, machine.can.frozen_samples)),
       takes_jumps_(takes_jumps) {

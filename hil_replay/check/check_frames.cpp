@@ -14,7 +14,6 @@
 namespace axg {
 namespace {
 
-constexpr std::array<const char*, 4> kFormats{"classical", "fd", "signals", "cia402"};
 constexpr std::array<const char*, 3> kTypes{"integer", "float", "double"};
 constexpr std::array<const char*, 8> kRoles{"position",    "velocity", "tool",    "moving",
                                             "tool_change", "homed",    "counter", "drive_status"};
@@ -31,7 +30,7 @@ void print_native(const CheckReport& report, const AxisFrameSet& set) {
         const std::size_t axes = machine.axes.size();
         return slot < axes ? machine.axes[slot].name : slot == axes ? "status" : "zeros";
     };
-    if (set.format == CanFormat::fd) {
+    if (set.is_flexible[0]) {
         std::string places;
         for (std::size_t i = 0; i < machine.axes.size(); ++i) {
             places += fmt::format("  {} in bytes {} to {}", name(i), 4 + 4 * i, 7 + 4 * i);
@@ -51,7 +50,7 @@ void print_native(const CheckReport& report, const AxisFrameSet& set) {
 void print_ids(const CheckReport& report) {
     const CanLayout& can = report.loaded.machine.can;
     fmt::print(report.words, "  from the board:");
-    if (can.format != CanFormat::signals) {
+    if (has_sync(wire_of(can))) {
         fmt::print(report.words, " SYNC 0x{:03X}", can.sync_id);
     }
     if (is_native(can)) {
@@ -136,10 +135,6 @@ void print(const CheckReport& report, const CanSignal& signal, std::uint8_t fram
 
 }  // namespace
 
-const char* to_text(CanFormat format) {
-    return word_of(kFormats, format);
-}
-
 const char* to_text(SignalType type) {
     return word_of(kTypes, type);
 }
@@ -161,9 +156,9 @@ void report_frames(CheckReport& report) {
     const CanLayout& can = machine.can;
     const AxisFrameSet set = make_frame_set(machine);
     fmt::print(
-        report.words, "\nframes: {}, {} a sample of {} us{}\n", to_text(can.format),
-        set.frame_count, can.sample_us,
-        can.format != CanFormat::cia402 ? ""
+        report.words, "\nframes: {}, {} a sample of {} us{}\n", wire_of(can).name, set.frame_count,
+        can.sample_us,
+        wire_of(can).mark != SampleMark::sync ? ""
         : can.sync_counter_max == 0
             ? fmt::format(", within {} us after SYNC 0x{:03X}", can.sync_window_us, can.sync_id)
             : fmt::format(", within {} us after SYNC 0x{:03X}{} that counts 1 to {}",

@@ -67,7 +67,7 @@ Json facts_of(const Machine& machine, const CanSignal& signal, std::uint8_t fram
 
 Json describe_frames(const Machine& machine) {
     const AxisFrameSet set = make_frame_set(machine);
-    Json out{{"format", to_text(machine.can.format)},
+    Json out{{"format", wire_of(machine.can).name},
              {"sample_us", machine.can.sample_us},
              {"frames_a_sample", set.frame_count}};
     for (std::uint32_t i = 0; i < set.signal_count; ++i) {

@@ -85,7 +85,6 @@ void report_guesses(CheckReport& report, const std::string& file);
 /// [axes] Above these speeds the guard sees an encoder that freezes, mm/s or rad/s (blind_speed).
 [[nodiscard]] std::vector<double> blind_speeds(const Machine& machine);
 
-[[nodiscard]] const char* to_text(CanFormat format);
 [[nodiscard]] const char* to_text(SignalType type);
 [[nodiscard]] const char* to_text(SignalRole role);
 /// Whether the signal is a number with a factor and an offset: position or velocity.

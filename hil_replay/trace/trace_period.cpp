@@ -36,7 +36,7 @@ TracePeriod judge_trace_period(TraceReader& trace, const Machine& machine) {
     std::optional<CanFrame> last;
     CanFrame frame;
     while (out.verdict != PeriodVerdict::wrong && trace.next(frame)) {
-        const bool is_measured = is_sync(frame, can.sync_id) && can.format != CanFormat::signals;
+        const bool is_measured = is_sync(frame, can.sync_id) && has_sync(wire_of(can));
         const std::int64_t steps = is_measured && last ? steps_between(*last, frame, can) : 1;
         if (!is_measured || steps == 0) {
             continue;  // sent twice: the earlier stamp stays
