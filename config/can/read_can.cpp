@@ -416,19 +416,11 @@ void check_reach(MapReader& top, MachineDraft& draft) {
 }
 
 /// A DBC file only locates the signals: the receiver reads them like those of format: signals.
-CanFormat format_of(CanSource source) noexcept {
-    switch (source) {
-        case CanSource::classical:
-            return CanFormat::classical;
-        case CanSource::fd:
-            return CanFormat::fd;
-        case CanSource::signals:
-        case CanSource::dbc:
-            return CanFormat::signals;
-        case CanSource::cia402:
-            return CanFormat::cia402;
-    }
-    return CanFormat::classical;
+CanFormat format_of(std::string_view source) noexcept {
+    const auto* const row =
+        std::find_if(kWireFormats.begin(), kWireFormats.end(),
+                     [&](const WireFormat& wire) { return wire.name == source; });
+    return row != kWireFormats.end() ? row->format : CanFormat::signals;
 }
 
 }  // namespace
@@ -469,7 +461,7 @@ void read_can(MapReader& top, MachineDraft& draft) {
     std::size_t source = 0;
     reader.choice("format", Need::optional, kSources, source);
     draft.can_source = static_cast<CanSource>(source);
-    draft.machine.can.format = format_of(draft.can_source);
+    draft.machine.can.format = format_of(kSources[source]);
     read_period(reader, draft);
     read_signals(reader, draft);
     read_look_ahead(reader, draft);
