@@ -23,10 +23,6 @@ constexpr std::int64_t kTurnCounts = 3'600'000;  // 360 deg at 0.0001 deg
 constexpr double kDegreesPerRadian = 180.0 / kPi;
 constexpr double kRadiansPerDegree = kPi / 180.0;
 
-constexpr double counts_per_mm(CanFormat format) noexcept {
-    return format == CanFormat::fd ? 1.0e4 : 1.0e3;
-}
-
 /// Nearest count; false when not finite or beyond what a double counts exactly.
 bool to_counts(double value, std::int64_t& counts) noexcept {
     if (!(std::abs(value) < 9.0e15)) {
@@ -43,9 +39,9 @@ std::int64_t modulo_turn(std::int64_t counts) noexcept {
 
 /// Counts of one axis in a field of `bits`; the most negative number is the marker and never a
 /// position.
-bool axis_counts(CanFormat format, const Wire& axis, double position, unsigned bits,
+bool axis_counts(const WireFormat& wire, const Wire& axis, double position, unsigned bits,
                  std::int64_t& counts) noexcept {
-    const double scaled = axis.kind == AxisKind::linear ? position * counts_per_mm(format)
+    const double scaled = axis.kind == AxisKind::linear ? position * wire.counts_per_mm
                                                         : position * kDegreesPerRadian * 1.0e4;
     if (!to_counts(scaled, counts)) {
         return false;
@@ -56,7 +52,7 @@ bool axis_counts(CanFormat format, const Wire& axis, double position, unsigned b
     return std::abs(counts) < (std::int64_t{1} << (bits - 1U));
 }
 
-AxisFrameContent::Value axis_value(CanFormat format, const Wire& axis, std::uint32_t index,
+AxisFrameContent::Value axis_value(const WireFormat& wire, const Wire& axis, std::uint32_t index,
                                    std::int64_t raw, std::int64_t marker) noexcept {
     AxisFrameContent::Value value{index, raw, raw != marker, 0};
     if (!value.known) {
@@ -66,7 +62,7 @@ AxisFrameContent::Value axis_value(CanFormat format, const Wire& axis, std::uint
         value.raw = raw = modulo_turn(raw);
     }
     const auto counts = static_cast<double>(raw);
-    value.position = axis.kind == AxisKind::linear ? counts / counts_per_mm(format)
+    value.position = axis.kind == AxisKind::linear ? counts / wire.counts_per_mm
                                                    : counts / 1.0e4 * kRadiansPerDegree;
     return value;
 }
@@ -78,7 +74,7 @@ FrameStatus decode_slot(const AxisFrameSet& set, std::uint32_t slot, const std::
     if (slot < set.axis_count) {
         const std::int64_t raw = detail::sign_extend(get_little(bytes, 3), 24);
         out.values[out.value_count++] =
-            axis_value(set.format, set.axes[slot], slot, raw, kNoPosition24);
+            axis_value(*set.wire, set.axes[slot], slot, raw, kNoPosition24);
         return FrameStatus::ok;
     }
     if (slot == set.axis_count) {
@@ -104,7 +100,7 @@ FrameStatus decode_classical(const AxisFrameSet& set, std::uint32_t index, const
     return first != FrameStatus::ok ? first : second;
 }
 
-FrameStatus decode_fd(const AxisFrameSet& set, const CanFrame& frame,
+FrameStatus decode_fd(const AxisFrameSet& set, std::uint32_t /*index*/, const CanFrame& frame,
                       AxisFrameContent& out) noexcept {
     if (!p05_check({frame.data.data(), frame.length_bytes}, set.data_ids[0])) {
         return FrameStatus::bad_crc;
@@ -114,16 +110,17 @@ FrameStatus decode_fd(const AxisFrameSet& set, const CanFrame& frame,
     const std::uint8_t* at = frame.data.data() + 4;
     for (std::uint32_t i = 0; i < set.axis_count; ++i, at += 4) {
         const std::int64_t raw = detail::sign_extend(get_little(at, 4), 32);
-        out.values[out.value_count++] = axis_value(set.format, set.axes[i], i, raw, kNoPosition32);
+        out.values[out.value_count++] = axis_value(*set.wire, set.axes[i], i, raw, kNoPosition32);
     }
     out.sender_time_us = static_cast<std::uint32_t>(get_little(at, 4));
     out.tool = static_cast<std::uint16_t>(get_little(at + 4, 2));
     out.mode = at[6];
-    out.sample_index = at[7];
+    const std::uint8_t sync_counter = at[7];
+    out.sample_index = static_cast<std::uint8_t>(sync_counter - 1U);
     out.has_status = out.has_tool = true;
     const auto* end = frame.data.data() + frame.length_bytes;
     const bool is_padded = std::all_of(at + 8, end, [](std::uint8_t byte) { return byte == 0; });
-    const bool is_sample = out.sample_index >= 1 && out.sample_index <= kSyncCounterMax;
+    const bool is_sample = sync_counter >= 1 && sync_counter <= kSyncCounterMax;
     return is_padded && is_sample ? FrameStatus::ok : FrameStatus::bad_format;
 }
 
@@ -138,7 +135,8 @@ CanFrame blank_frame(const AxisFrameSet& set, std::uint32_t index) noexcept {
 
 /// Writes all axis frames; returns the axis that does not fit, or kNoIndex.
 std::uint32_t fill_classical(const AxisFrameSet& set, const AxisSnapshot& snapshot,
-                             std::uint8_t counter, std::span<CanFrame> out) noexcept {
+                             const AxisSnapshot& /*last*/, std::uint32_t counter,
+                             std::span<CanFrame> out) noexcept {
     const auto sample_nibble = static_cast<std::uint8_t>(snapshot.sample % kSyncCounterMax & 15U);
     for (std::uint32_t index = 0; index < set.frame_count; ++index) {
         CanFrame frame = blank_frame(set, index);
@@ -148,7 +146,7 @@ std::uint32_t fill_classical(const AxisFrameSet& set, const AxisSnapshot& snapsh
             std::uint8_t* bytes = frame.data.data() + 2 + 3 * half;
             if (slot < set.axis_count) {
                 std::int64_t raw = 0;
-                if (!axis_counts(set.format, set.axes[slot], snapshot.position[slot], 24, raw)) {
+                if (!axis_counts(*set.wire, set.axes[slot], snapshot.position[slot], 24, raw)) {
                     return slot;
                 }
                 put_little(bytes, static_cast<std::uint64_t>(raw), 3);
@@ -165,14 +163,15 @@ std::uint32_t fill_classical(const AxisFrameSet& set, const AxisSnapshot& snapsh
     return kNoIndex;
 }
 
-std::uint32_t fill_fd(const AxisFrameSet& set, const AxisSnapshot& snapshot, std::uint8_t counter,
+std::uint32_t fill_fd(const AxisFrameSet& set, const AxisSnapshot& snapshot,
+                      const AxisSnapshot& /*last*/, std::uint32_t counter,
                       std::span<CanFrame> out) noexcept {
     CanFrame frame = blank_frame(set, 0);
     frame.data[3] = snapshot.flags;
     std::uint8_t* at = frame.data.data() + 4;
     for (std::uint32_t i = 0; i < set.axis_count; ++i, at += 4) {
         std::int64_t raw = 0;
-        if (!axis_counts(set.format, set.axes[i], snapshot.position[i], 32, raw)) {
+        if (!axis_counts(*set.wire, set.axes[i], snapshot.position[i], 32, raw)) {
             return i;
         }
         put_little(at, static_cast<std::uint64_t>(raw), 4);
@@ -181,7 +180,8 @@ std::uint32_t fill_fd(const AxisFrameSet& set, const AxisSnapshot& snapshot, std
     put_little(at + 4, snapshot.tool, 2);
     at[6] = snapshot.mode;
     at[7] = sync_counter_of(snapshot.sample);
-    p05_protect({frame.data.data(), frame.length_bytes}, set.data_ids[0], counter);
+    p05_protect({frame.data.data(), frame.length_bytes}, set.data_ids[0],
+                static_cast<std::uint8_t>(counter));
     out[0] = frame;
     return kNoIndex;
 }
@@ -200,7 +200,7 @@ std::uint32_t fill_look_ahead(const AxisFrameSet& set, const AxisSnapshot& snaps
     for (const auto* positions : {&look_ahead.position, &look_ahead.before}) {
         for (std::uint32_t i = 0; i < set.axis_count; ++i, at += 4) {
             std::int64_t raw = 0;
-            if (!axis_counts(set.format, set.axes[i], (*positions)[i], 32, raw)) {
+            if (!axis_counts(*set.wire, set.axes[i], (*positions)[i], 32, raw)) {
                 return i;
             }
             put_little(at, static_cast<std::uint64_t>(raw), 4);
@@ -211,7 +211,19 @@ std::uint32_t fill_look_ahead(const AxisFrameSet& set, const AxisSnapshot& snaps
     return kNoIndex;
 }
 
+// In the order of kWireFormats.
+constexpr std::array<AxisCodec, kWireFormats.size()> kCodecs{{
+    {.decode = decode_classical, .fill = fill_classical, .counter_modulus = 16},
+    {.decode = decode_fd, .fill = fill_fd, .counter_modulus = 256, .is_flexible = true},
+    {.decode = decode_signals, .fill = fill_signals},
+    {.decode = decode_signals, .fill = fill_signals},
+}};
+
 }  // namespace
+
+const AxisCodec& axis_codec(const WireFormat& wire) noexcept {
+    return kCodecs[static_cast<std::size_t>(wire.format)];
+}
 
 std::uint32_t slot_of(const AxisFrameSet& set, const CanFrame& frame) noexcept {
     std::uint32_t slot = 0;
@@ -245,16 +257,7 @@ FrameStatus decode_axis_frame(const AxisFrameSet& set, std::uint32_t slot, const
     if (frame.length_bytes != set.frame_bytes[slot]) {
         return FrameStatus::bad_length;
     }
-    switch (set.format) {
-        case CanFormat::classical:
-            return decode_classical(set, slot, frame, out);
-        case CanFormat::fd:
-            return decode_fd(set, frame, out);
-        case CanFormat::signals:
-        case CanFormat::cia402:
-            return decode_signals(set, slot, frame, out);
-    }
-    return FrameStatus::bad_format;
+    return set.codec->decode(set, slot, frame, out);
 }
 
 FrameStatus decode_look_ahead_frame(const AxisFrameSet& set, const CanFrame& frame,
@@ -282,7 +285,7 @@ FrameStatus decode_look_ahead_frame(const AxisFrameSet& set, const CanFrame& fra
     for (auto* positions : {&out.position, &out.before}) {
         for (std::uint32_t i = 0; i < set.axis_count; ++i, at += 4) {
             const std::int64_t raw = detail::sign_extend(get_little(at, 4), 32);
-            const auto value = axis_value(set.format, set.axes[i], i, raw, kNoPosition32);
+            const auto value = axis_value(*set.wire, set.axes[i], i, raw, kNoPosition32);
             is_good = is_good && value.known;
             (*positions)[i] = value.position;
         }
@@ -348,38 +351,27 @@ EncodeResult AxisEncoder::encode(const AxisSnapshot& snapshot, std::span<CanFram
     if (out.size() < set_.frame_count + (set_.session_id != 0 ? 4U : 3U)) {
         return {EncodeStatus::out_too_small};
     }
-    const bool is_ours = set_.format == CanFormat::classical || set_.format == CanFormat::fd;
-    const std::uint32_t first = set_.format == CanFormat::signals ? 0 : 1;  // SYNC goes before
-    const std::span<CanFrame> axes = out.subspan(first);
-    std::uint32_t misfit = kNoIndex;
-    const auto counter = static_cast<std::uint8_t>(counter_);
-    if (set_.format == CanFormat::classical) {
-        misfit = fill_classical(set_, snapshot, counter, axes);
-    } else if (set_.format == CanFormat::fd) {
-        misfit = fill_fd(set_, snapshot, counter, axes);
-    } else {
-        misfit = fill_signals(set_, snapshot, last_, counter_, axes);
-    }
+    const std::uint32_t first = has_sync(*set_.wire) ? 1 : 0;  // SYNC goes before
+    std::uint32_t misfit = set_.codec->fill(set_, snapshot, last_, counter_, out.subspan(first));
     std::uint32_t count = first + set_.frame_count;
     if (look_ahead != nullptr && set_.look_ahead_samples != 0 && misfit == kNoIndex) {
-        misfit = fill_look_ahead(set_, snapshot, *look_ahead, counter, out[count++]);
+        misfit = fill_look_ahead(set_, snapshot, *look_ahead, static_cast<std::uint8_t>(counter_),
+                                 out[count++]);
     }
     if (misfit != kNoIndex) {
         return {EncodeStatus::out_of_range, misfit};
     }
-    if (set_.format == CanFormat::cia402) {
+    if (first != 0) {
         const std::uint8_t most = set_.sync_counter_max;
         const std::uint8_t sync = most == 0 ? 0 : sync_counter_of(snapshot.sample, most);
         out[0] = encode_sync(set_.sync_id, sync, snapshot.latched_us);
         out[0].length_bytes = most == 0 ? 0 : 1;
     }
-    if (is_ours) {
-        out[0] = encode_sync(set_.sync_id, sync_counter_of(snapshot.sample), snapshot.latched_us);
-        if (!has_heartbeat_ || snapshot.latched_us - heartbeat_us_ >= kHeartbeatPeriodUs) {
-            out[count++] = encode_heartbeat(set_.heartbeat_id, kHeartbeatOperational, 0);
-            heartbeat_us_ = snapshot.latched_us;
-            has_heartbeat_ = true;
-        }
+    if (is_native(*set_.wire) &&
+        (!has_heartbeat_ || snapshot.latched_us - heartbeat_us_ >= kHeartbeatPeriodUs)) {
+        out[count++] = encode_heartbeat(set_.heartbeat_id, kHeartbeatOperational, 0);
+        heartbeat_us_ = snapshot.latched_us;
+        has_heartbeat_ = true;
     }
     if (is_session_due(snapshot)) {
         out[count++] =

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Axis positions to CAN frames and back, in the four formats of CanLayout. Byte by byte:
+// Axis positions to CAN frames and back, in the formats of core/machine/wire_format.hpp: set-up
+// gives a frame set the codec of its format, and no cycle compares formats. Byte by byte:
 // docs/reference/protocol.md. No allocation, no state of the bus: the receiver decides whether a
 // frame may be used (axis_receiver.hpp).
 #pragma once
@@ -19,12 +20,12 @@ inline constexpr std::uint32_t kFramesPerSnapshotMax =
     kAxisFramesMax + 4;  // with SYNC, heartbeat, look-ahead path and session
 inline constexpr std::int32_t kNoPosition24 = -(1 << 23);  // marker: no position
 inline constexpr std::int32_t kNoPosition32 = INT32_MIN;
-inline constexpr double kClassicalUnitMm = 1.0e-3;  // 1 um
-inline constexpr double kFdUnitMm = 1.0e-4;         // 0.1 um
 inline constexpr double kAngleUnitDeg = 1.0e-4;
 inline constexpr std::uint8_t kHeartbeatOperational = 5;
 inline constexpr std::int64_t kHeartbeatPeriodUs = 10000;
 inline constexpr std::int64_t kSessionPeriodUs = 100'000;
+
+struct AxisCodec;
 
 /// Places of all values in the frames, derived once from a Machine: fixed arrays, so that coding
 /// needs no heap and no Machine.
@@ -35,9 +36,10 @@ struct AxisFrameSet {
         double unit = 0;  // mm or rad of one count on the wire (signals: |factor| in these units)
         double still_speed = 0;  // mm/s or deg/s: a drive that reports no more is at rest
     };
-    CanFormat format = CanFormat::classical;
-    std::uint32_t axis_count = 0;   // 0: the set is empty
-    std::uint32_t frame_count = 0;  // axis frames a snapshot
+    const WireFormat* wire = &kWireFormats[0];
+    const AxisCodec* codec = nullptr;  // null in an empty set
+    std::uint32_t axis_count = 0;      // 0: the set is empty
+    std::uint32_t frame_count = 0;     // axis frames a snapshot
     std::uint32_t sample_us = 0;
     std::uint8_t sync_counter_max = kSyncCounterMax;  // 0: SYNC is empty
     std::array<std::uint32_t, kAxisFramesMax> ids{};  // as core/machine/can_id.hpp marks them
@@ -68,7 +70,7 @@ struct AxisFrameSet {
 /// and markers use them.
 struct AxisFrameContent {
     std::uint8_t counter = 0;          // classical 0..15, fd 0..255, others where they have one
-    std::uint8_t sample_index = 0;     // classical (SYNC counter - 1) mod 16, fd the SYNC counter
+    std::uint8_t sample_index = 0;     // (SYNC counter - 1) modulo WireFormat::index_modulus
     std::uint32_t sender_time_us = 0;  // fd only
     bool has_status = false;           // mode, flags and tool below are valid
     bool has_tool = false;             // tool is valid; classical frames carry its low byte only
@@ -86,6 +88,20 @@ struct AxisFrameContent {
 };
 
 enum class FrameStatus : std::uint8_t { ok, not_ours, bad_length, bad_format, raw_dlc, bad_crc };
+
+/// How both ends code the axis frames of a format.
+struct AxisCodec {
+    FrameStatus (*decode)(const AxisFrameSet& set, std::uint32_t slot, const CanFrame& frame,
+                          AxisFrameContent& out) noexcept;
+    /// Writes all axis frames of a snapshot; returns the axis that does not fit, or kNoIndex.
+    /// @param last  the snapshot before: drives report speeds
+    std::uint32_t (*fill)(const AxisFrameSet& set, const AxisSnapshot& snapshot,
+                          const AxisSnapshot& last, std::uint32_t counter,
+                          std::span<CanFrame> out) noexcept;
+    std::uint16_t counter_modulus = 0;  // of own frames
+    bool is_flexible = false;           // own frames are CAN FD
+};
+[[nodiscard]] const AxisCodec& axis_codec(const WireFormat& wire) noexcept;
 
 /// Number of the set's axis frame with this id, and with this selector where frames share an id;
 /// frame_count: none. An id of 11 bits never matches one of 29.

@@ -53,10 +53,11 @@ bool fits_set(const Machine& machine) noexcept {
         return false;
     }
     if (is_native(can)) {
-        const std::size_t frames = own_axis_frames(wire_of(can), axes);
-        const bool is_fd = can.format == CanFormat::fd;
-        const bool has_room = can.look_ahead_samples != 0 ? is_fd && axes <= kLookAheadAxesMax
-                                                          : !is_fd || axes <= kFdAxesMax;
+        const WireFormat& wire = wire_of(can);
+        const std::size_t frames = own_axis_frames(wire, axes);
+        const bool has_room = can.look_ahead_samples != 0
+                                  ? wire.has_look_ahead && axes <= kLookAheadAxesMax
+                                  : axes <= wire.axes_max;
         return has_room && can.look_ahead_samples <= kLookAheadSamplesMax &&
                can.axis_ids.size() >= frames && can.data_ids.size() >= frames;
     }
@@ -131,14 +132,16 @@ AxisFrameSet make_frame_set(const Machine& machine) noexcept {
         return set;
     }
     const CanLayout& can = machine.can;
-    set.format = can.format;
+    set.wire = &wire_of(can);
+    set.codec = &axis_codec(*set.wire);
     set.axis_count = static_cast<std::uint32_t>(machine.axes.size());
     set.sample_us = can.sample_us;
     set.sync_id = can.sync_id;
     set.heartbeat_id = can.heartbeat_in_id;
-    set.sync_counter_max = can.format == CanFormat::cia402 ? can.sync_counter_max : kSyncCounterMax;
+    set.sync_counter_max =
+        set.wire->mark == SampleMark::sync ? can.sync_counter_max : kSyncCounterMax;
     set.session_id = has_sample_counter(can) ? can.session_in_id : 0;
-    const double unit_mm = can.format == CanFormat::fd ? kFdUnitMm : kClassicalUnitMm;
+    const double unit_mm = 1.0 / set.wire->counts_per_mm;
     for (std::uint32_t i = 0; i < set.axis_count; ++i) {
         const Axis& axis = machine.axes[i];
         const double unit = axis.kind == AxisKind::linear ? unit_mm : kAngleUnitDeg * kPi / 180.0;
@@ -148,12 +151,11 @@ AxisFrameSet make_frame_set(const Machine& machine) noexcept {
         fill_signals(machine, set);
         return set;
     }
-    set.frame_count = own_axis_frames(wire_of(can), set.axis_count);
-    const bool is_fd = can.format == CanFormat::fd;
+    set.frame_count = own_axis_frames(*set.wire, set.axis_count);
     for (std::uint32_t i = 0; i < set.frame_count; ++i) {
-        set.frame_bytes[i] = is_fd ? fd_length(12 + 4 * set.axis_count) : 8;
-        set.is_flexible[i] = is_fd;
-        set.counter_modulus[i] = is_fd ? 256 : 16;
+        set.frame_bytes[i] = set.codec->is_flexible ? fd_length(12 + 4 * set.axis_count) : 8;
+        set.is_flexible[i] = set.codec->is_flexible;
+        set.counter_modulus[i] = set.codec->counter_modulus;
         set.ids[i] = can.axis_ids[i];
         set.data_ids[i] = can.data_ids[i];
     }

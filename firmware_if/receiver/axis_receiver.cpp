@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decides which frames may be used. Their assembly to one snapshot: axis_assembly.cpp.
+// Decides which frames may be used, and judges complete samples.
 #include "firmware_if/receiver/axis_receiver.hpp"
 
 #include <algorithm>
@@ -23,6 +23,9 @@ constexpr std::uint8_t kNarrowSteps = 3;
 constexpr std::uint32_t kSyncUnit = 8;
 // Without a stated jitter two samples may be numbered so many periods short (arrival_anchor.hpp).
 constexpr std::int64_t kNumbersOff = 2;
+// A look-ahead path may overtake the positions of its sample, or replace those that were lost.
+constexpr int kLookAheadSamplesLate = 2, kLookAheadSamplesEarly = 10;
+constexpr std::size_t kLookAheadSlot = kAxisFramesMax;
 
 std::int64_t latch_jitter_us(const Machine& machine) noexcept {
     return std::lround(std::ceil(machine.guard.latch_jitter_s * 1e6));
@@ -35,16 +38,6 @@ PeriodTerms sender_terms(const Machine& machine) noexcept {
     const std::int64_t off_us = latch_jitter_us(machine) + 1;
     return {.period_us = period_us, .right_us = off_us, .wrong_us = off_us + period_us / 5};
 }
-
-/// @param modulus  of the counter; 0: the frame has none
-SequenceCheck sequence_of(const CanLayout& can, std::uint16_t modulus) noexcept {
-    const std::uint8_t steps = modulus < kWideCounter
-                                   ? std::min(kNarrowSteps, can.counter_delta_max)
-                                   : can.counter_delta_max;
-    return {std::max<std::uint16_t>(2, modulus), steps, can.sync_counter_init};
-}
-
-}  // namespace
 
 ReceiverFault fault_of(FrameStatus status) noexcept {
     switch (status) {
@@ -63,12 +56,33 @@ ReceiverFault fault_of(FrameStatus status) noexcept {
     return ReceiverFault::bad_format;
 }
 
+}  // namespace
+
+SequenceCheck sequence_of(const CanLayout& can, std::uint16_t modulus) noexcept {
+    const std::uint8_t steps = modulus < kWideCounter
+                                   ? std::min(kNarrowSteps, can.counter_delta_max)
+                                   : can.counter_delta_max;
+    return {std::max<std::uint16_t>(2, modulus), steps, can.sync_counter_init};
+}
+
+Assembler make_assembler(const CanLayout& can, const AxisFrameSet& set) noexcept {
+    switch (set.wire->mark) {
+        case SampleMark::index:
+            break;
+        case SampleMark::sync:
+            return DriveAssembler{can, set};
+        case SampleMark::arrival:
+            return SignalAssembler{can};
+    }
+    return NativeAssembler{can, set};
+}
+
 PeriodTerms sync_terms(const Machine& machine) noexcept {
     const CanLayout& can = machine.can;
     const std::int64_t period_us = can.sample_us;
     const std::int64_t numbered_us =
         can.arrival_jitter_us != 0 ? can.arrival_jitter_us : (1 + kNumbersOff) * period_us;
-    const std::int64_t late_us = can.format == CanFormat::signals ? numbered_us : period_us;
+    const std::int64_t late_us = has_sync(wire_of(can)) ? period_us : numbered_us;
     const std::int64_t off_us = late_us + latch_jitter_us(machine) + 1;
     return {.period_us = period_us, .right_us = off_us, .wrong_us = off_us, .unit = kSyncUnit};
 }
@@ -113,26 +127,35 @@ ReceiverCounters operator+(ReceiverCounters a, const ReceiverCounters& b) noexce
 }
 
 AxisReceiver::AxisReceiver(const Machine& machine, ReceiverOptions options) noexcept
-    : set_(make_frame_set(machine)), check_(machine, set_, options.takes_jumps), options_(options) {
+    : set_(make_frame_set(machine)),
+      check_(machine, set_, options.takes_jumps),
+      assembler_(make_assembler(machine.can, set_)) {
     const CanLayout& can = machine.can;
+    const bool measures = measures_period(can);
+    rules_ = {.stale_after_us = can.stale_after_us,
+              .init_snapshots = std::max<std::uint8_t>(1, can.sync_counter_init),
+              .refuse_local = options.refuse_local,
+              .needs_period = measures && options.period == PeriodUse::proven};
+    const bool has_path = set_.look_ahead_samples != 0;
+    ids_ = {has_sync(*set_.wire) ? set_.sync_id : kNoIndex,
+            is_native(*set_.wire) ? set_.heartbeat_id : kNoIndex,
+            set_.session_id != 0 ? set_.session_id : kNoIndex,
+            has_path ? set_.look_ahead_id : kNoIndex};
     for (std::uint32_t i = 0; i < set_.frame_count; ++i) {
-        slots_[i].sequence = sequence_of(can, set_.counter_modulus[i]);
+        last_frames_[i].sequence = sequence_of(can, set_.counter_modulus[i]);
     }
-    look_ahead_slot_.sequence = sequence_of(can, 256);
-    session_slot_.sequence = sequence_of(can, 16);
-    sync_sequence_ = sequence_of(can, set_.sync_counter_max);
-    init_snapshots_ = std::max<std::uint8_t>(1, can.sync_counter_init);
-    stale_after_us_ = can.stale_after_us;
-    heartbeat_timeout_us_ = can.heartbeat_timeout_us;
-    index_modulus_ = can.format == CanFormat::fd ? kSyncCounterMax : 16;
-    sync_window_us_ = can.sync_window_us != 0 ? can.sync_window_us : can.sample_us;
-    sync_period_.terms = sync_terms(machine);
-    sender_period_.terms = sender_terms(machine);
-    measures_period_ = measures_period(can);
-    arrivals_.period_us = can.sample_us;
-    arrivals_.jitter_us = can.arrival_jitter_us != 0
-                              ? can.arrival_jitter_us
-                              : static_cast<std::int64_t>(kArrivalJitterShareMax * can.sample_us);
+    last_frames_[kLookAheadSlot].sequence = sequence_of(can, 256);
+    session_.frame.sequence = sequence_of(can, 16);
+    heartbeat_ = {.is_awaited = is_native(*set_.wire), .timeout_us = can.heartbeat_timeout_us};
+    flood_.period_us = set_.sample_us;
+    flood_.set_frames = set_.frame_count + (has_path ? 1U : 0U);
+    samples_.axis_count = set_.axis_count;
+    samples_.period_us = set_.sample_us;
+    samples_.set.whole = (std::uint64_t{1} << set_.frame_count) - 1U;
+    samples_.judges_period = measures && options.period != PeriodUse::ignored;
+    samples_.by_sync.watch.terms = sync_terms(machine);
+    samples_.by_sender.watch.terms = sender_terms(machine);
+    samples_.by_sender.is_needed = set_.wire->has_sender_clock;
     acknowledge();
 }
 
@@ -140,44 +163,36 @@ void AxisReceiver::acknowledge() noexcept {
     const bool is_fit = set_.axis_count != 0;
     state_ = is_fit ? ReceiverState::init : ReceiverState::invalid;
     stop_cause_ = is_fit ? ReceiverFault::none : ReceiverFault::bad_layout;
-    has_heartbeat_ = false;
-    loss_level_ = 0;
-    window_us_ = INT64_MIN;
+    heartbeat_.is_operational = false;
+    losses_.level = 0;
+    flood_.begin_us = INT64_MIN;
     forget();
 }
 
 /// Clears all references: the next frames count as the first ones.
 void AxisReceiver::forget() noexcept {
-    for (Slot& slot : slots_) {
-        slot.sequence.reset();
+    for (LastFrame& frame : last_frames_) {
+        frame.sequence.reset();
     }
-    look_ahead_slot_.sequence.reset();
-    session_slot_.sequence.reset();
-    session_ = {};
-    sync_sequence_.reset();
-    sync_stamps_.fill({});
-    last_sync_ = {};
+    session_.forget();
     check_.reset();
-    seen_ = 0;
-    drives_ = {};
-    arrivals_.has_sample = false;
-    arrival_steps_ = 0;
-    restart(sync_period_);
-    restart(sender_period_);
-    shows_sync_period_ = shows_sender_period_ = false;
-    has_last_ = has_sender_ = false;
-    good_in_row_ = estimates_ = 0;
+    samples_.forget();
+    std::visit([](auto& assembler) { assembler.forget(); }, assembler_);
+    losses_.good_in_row = 0;
 }
 
 ReceiverEvent AxisReceiver::event() const noexcept {
     ReceiverEvent event;
     event.state = state_;
-    event.time_us = now_us_;
+    event.time_us = samples_.now_us;
     return event;
 }
 
 ReceiverEvent AxisReceiver::fault(ReceiverFault kind, std::uint32_t frame_id,
                                   std::uint32_t axis) noexcept {
+    if (kind == ReceiverFault::none) {
+        return event();
+    }
     const FaultRow& row = fault_row(kind);
     ++counters_.faults[static_cast<std::size_t>(row.fault)];
     if (row.severity == Severity::stop) {
@@ -193,40 +208,23 @@ ReceiverEvent AxisReceiver::fault(ReceiverFault kind, std::uint32_t frame_id,
     return event;
 }
 
-/// Also stores that the period was shown to be right.
-bool AxisReceiver::is_period_wrong(PeriodWatch& watch, std::int64_t steps,
-                                   std::int64_t stamp_us) noexcept {
-    if (options_.period == PeriodUse::ignored || !measures_period_) {
-        return false;
-    }
-    const PeriodVerdict verdict = judge_stamp(watch, steps, stamp_us);
-    if (verdict != PeriodVerdict::unknown) {
-        counters_.measured_period_ns = watch.measured_ns;
-    }
-    bool& is_shown = &watch == &sender_period_ ? shows_sender_period_ : shows_sync_period_;
-    is_shown = is_shown || verdict == PeriodVerdict::right;
-    return verdict == PeriodVerdict::wrong;
-}
-
 void AxisReceiver::advance_clock(std::int64_t time_us) noexcept {
-    if (time_us < now_us_) {
+    if (time_us < samples_.now_us) {
         ++counters_.clock_steps;  // never backwards: an age may only grow
         return;
     }
-    now_us_ = time_us;
-}
-
-bool AxisReceiver::is_heartbeat_fresh() const noexcept {
-    return !is_native() || (has_heartbeat_ && now_us_ - heartbeat_us_ <= heartbeat_timeout_us_);
+    samples_.now_us = time_us;
 }
 
 ReceiverEvent AxisReceiver::check_clock() noexcept {
-    const bool is_stale = has_last_ && now_us_ - last_latched_us_ > stale_after_us_;
+    const LastSample& last = samples_.last;
+    const bool is_stale =
+        last.is_known && samples_.now_us - last.latched_us > rules_.stale_after_us;
     if (state_ == ReceiverState::valid) {
         if (is_stale) {
             return fault(ReceiverFault::stale);
         }
-        if (!is_heartbeat_fresh()) {
+        if (!heartbeat_.is_fresh(samples_.now_us)) {
             return fault(ReceiverFault::heartbeat_lost);
         }
     } else if (state_ == ReceiverState::init && is_stale) {
@@ -263,14 +261,9 @@ ReceiverEvent AxisReceiver::on_frame(const CanFrame& frame) noexcept {
     const auto axes_end = set_.ids.begin() + set_.frame_count;
     const bool is_like_axis =
         is_other && std::find(set_.ids.begin(), axes_end, low_bits) != axes_end;
-    const auto is_low = [&](bool is_used, std::uint32_t id) {
-        return !is_axis && is_used && low_bits == id;
-    };
-    const bool is_sync = is_low(set_.format != CanFormat::signals, set_.sync_id);
-    const bool is_heartbeat = is_low(is_native(), set_.heartbeat_id);
-    const bool is_look_ahead = is_low(set_.look_ahead_samples != 0, set_.look_ahead_id);
-    const bool is_session = is_low(set_.session_id != 0, set_.session_id);
-    if (!is_axis && !is_like_axis && !is_sync && !is_heartbeat && !is_look_ahead && !is_session) {
+    const auto row = std::find(ids_.begin(), ids_.end(), low_bits) - ids_.begin();
+    const Kind kind = is_axis ? Kind::none : static_cast<Kind>(row);
+    if (!is_axis && !is_like_axis && kind == Kind::none) {
         ++counters_.foreign;
         return event();
     }
@@ -280,23 +273,26 @@ ReceiverEvent AxisReceiver::on_frame(const CanFrame& frame) noexcept {
     if (frame.remote) {
         return fault(ReceiverFault::remote_frame, frame.id);
     }
-    if (frame.sent_by_host && options_.refuse_local) {
+    if (frame.sent_by_host && rules_.refuse_local) {
         return fault(ReceiverFault::local_sender, frame.id);
     }
-    if (is_sync) {
-        return is_native() ? on_sync(frame) : on_drive_sync(frame);
+    switch (kind) {
+        case Kind::sync:
+            return conclude(
+                std::visit([&](auto& to) { return to.on_sync(frame, samples_); }, assembler_),
+                frame.id);
+        case Kind::heartbeat:
+            return on_heartbeat(frame);
+        case Kind::session:
+            return on_session_frame(frame);
+        case Kind::look_ahead:
+        case Kind::none:
+            break;
     }
-    if (is_heartbeat) {
-        return on_heartbeat(frame);
-    }
-    if (is_session) {
-        return on_session_frame(frame);
-    }
-    // More than twice a set of our frames in one period: another node sends them too.
-    if (is_flood()) {
+    if (flood_.is_flood(samples_.now_us)) {
         return fault(ReceiverFault::flood, frame.id);
     }
-    return is_look_ahead ? on_look_ahead_frame(frame) : on_axis_frame(frame, slot);
+    return kind == Kind::look_ahead ? on_look_ahead_frame(frame) : on_axis_frame(frame, slot);
 }
 
 ReceiverEvent AxisReceiver::on_error_frame(const CanFrame& frame) noexcept {
@@ -313,7 +309,7 @@ ReceiverEvent AxisReceiver::on_error_frame(const CanFrame& frame) noexcept {
         if ((frame.data[1] & kControllerRxOverflow) != 0) {
             count_loss(1);
             return fault(
-                loss_level_ > kLossLimit ? ReceiverFault::loss_limit : ReceiverFault::rx_overflow,
+                losses_.level > kLossLimit ? ReceiverFault::loss_limit : ReceiverFault::rx_overflow,
                 frame.id);
         }
         if ((frame.data[1] & kControllerRxPassive) != 0) {
@@ -323,29 +319,60 @@ ReceiverEvent AxisReceiver::on_error_frame(const CanFrame& frame) noexcept {
     return fault(ReceiverFault::error_frame, frame.id);
 }
 
-/// The period starts anew with each SYNC, or by itself without SYNC.
-bool AxisReceiver::is_flood() noexcept {
-    if (window_us_ == INT64_MIN || now_us_ - window_us_ >= set_.sample_us) {
-        window_us_ = now_us_;
-        window_frames_ = 0;
+ReceiverEvent AxisReceiver::on_heartbeat(const CanFrame& frame) noexcept {
+    const ReceiverFault shape = shape_of(frame, 1);
+    if (shape != ReceiverFault::none) {
+        return fault(shape, frame.id);
     }
-    const std::uint32_t set_frames = set_.frame_count + (set_.look_ahead_samples != 0 ? 1U : 0U);
-    return ++window_frames_ > 2 * set_frames;
+    const std::uint8_t node_state = frame.data[0];
+    if (node_state == kHeartbeatOperational) {
+        heartbeat_.is_operational = true;
+        heartbeat_.time_us = samples_.now_us;
+        return event();
+    }
+    const bool is_known = node_state == 0 || node_state == 4 || node_state == 127;
+    if (!is_known) {
+        return fault(ReceiverFault::bad_format, frame.id);
+    }
+    heartbeat_.is_operational = false;
+    return state_ == ReceiverState::valid ? fault(ReceiverFault::heartbeat_state, frame.id)
+                                          : event();
 }
 
-/// No event: the frame may be used.
-ReceiverEvent AxisReceiver::check_counter(const CanFrame& frame, std::uint8_t counter,
-                                          Slot& known) noexcept {
-    if (known.sequence.is_repeat(counter)) {
-        const auto* end = frame.data.data() + frame.length_bytes;
-        const bool is_same = std::equal(frame.data.data(), end, known.payload.data());
-        return fault(is_same ? ReceiverFault::repeated : ReceiverFault::spoofed, frame.id);
+ReceiverEvent AxisReceiver::on_session_frame(const CanFrame& frame) noexcept {
+    Session session;
+    const FrameStatus status = decode_session(set_.session_id, frame, session);
+    return fault(status != FrameStatus::ok ? fault_of(status)
+                                           : session_.on_session(frame, session, samples_),
+                 frame.id);
+}
+
+/// Counts samples as in the snapshots, so it needs a snapshot first. A frame may arrive before or
+/// after the positions of its sample.
+ReceiverEvent AxisReceiver::on_look_ahead_frame(const CanFrame& frame) noexcept {
+    LookAheadFrameContent content;
+    const FrameStatus status = decode_look_ahead_frame(set_, frame, content);
+    if (status != FrameStatus::ok) {
+        return fault(fault_of(status), frame.id);
     }
-    if (known.sequence.next(counter) == Sequence::wrong) {
-        return fault(ReceiverFault::wrong_sequence, frame.id);
+    const ReceiverFault wrong = last_frames_[kLookAheadSlot].judge(frame, content.counter);
+    if (wrong != ReceiverFault::none || !samples_.last.is_known) {
+        return fault(wrong, frame.id);
     }
-    known.payload = frame.data;
-    return event();
+    const int modulus = set_.wire->index_modulus;
+    int off = (content.sync_counter - 1 - samples_.last.index + modulus) % modulus;
+    off -= off > modulus / 2 ? modulus : 0;
+    if (off < -kLookAheadSamplesLate || off > kLookAheadSamplesEarly) {
+        return fault(ReceiverFault::late_sample, frame.id);
+    }
+    ReceiverEvent event = this->event();
+    event.kind = ReceiverEvent::Kind::look_ahead;
+    event.look_ahead.sample =
+        samples_.last.sample + content.samples + static_cast<std::uint64_t>(off);
+    event.look_ahead.position = content.position;
+    event.look_ahead.before = content.before;
+    ++counters_.look_ahead;
+    return event;
 }
 
 ReceiverEvent AxisReceiver::on_axis_frame(const CanFrame& frame, std::uint32_t slot) noexcept {
@@ -354,10 +381,11 @@ ReceiverEvent AxisReceiver::on_axis_frame(const CanFrame& frame, std::uint32_t s
     if (status != FrameStatus::ok) {
         return fault(fault_of(status), frame.id);
     }
+    LastFrame& last = last_frames_[slot];
     if (set_.counter_modulus[slot] != 0) {
-        const ReceiverEvent counted = check_counter(frame, content.counter, slots_[slot]);
-        if (counted.kind != ReceiverEvent::Kind::none) {
-            return counted;
+        const ReceiverFault wrong = last.judge(frame, content.counter);
+        if (wrong != ReceiverFault::none) {
+            return fault(wrong, frame.id);
         }
     }
     for (std::uint32_t i = 0; i < content.value_count; ++i) {
@@ -368,16 +396,79 @@ ReceiverEvent AxisReceiver::on_axis_frame(const CanFrame& frame, std::uint32_t s
     if (content.drive_in_fault != kNoIndex) {
         return fault(ReceiverFault::drive_fault, frame.id, content.drive_in_fault);
     }
-    if (set_.format == CanFormat::cia402) {
-        return assemble_drives(content, slot, frame);
+    const AxisFrame axis{frame, content, slot, last};
+    return conclude(std::visit([&](auto& to) { return to.on_axis(axis, samples_); }, assembler_),
+                    frame.id);
+}
+
+ReceiverEvent AxisReceiver::conclude(const Assembly& assembly, std::uint32_t frame_id) noexcept {
+    counters_.measured_period_ns = samples_.measured_period_ns;
+    counters_.estimated += assembly.is_estimated ? 1 : 0;
+    if (assembly.begins_period) {
+        flood_.begin(samples_.now_us);
     }
-    return is_native() ? assemble(content, slot, frame.id)
-                       : assemble_signals(content, slot, frame.id);
+    if (assembly.fault == ReceiverFault::none && assembly.latch) {
+        return deliver(*assembly.latch, assembly.steps, frame_id);
+    }
+    return fault(assembly.fault, frame_id);
+}
+
+ReceiverEvent AxisReceiver::deliver(const Latch& latch, std::uint32_t steps,
+                                    std::uint32_t frame_id) noexcept {
+    AxisSnapshot& snapshot = samples_.set.snapshot;
+    LastSample& last = samples_.last;
+    const std::int64_t age_us = samples_.now_us - latch.time_us;
+    if (age_us > rules_.stale_after_us) {
+        return fault(ReceiverFault::too_old, frame_id);
+    }
+    const SnapshotFault wrong = check_.check(snapshot, samples_.set.raw, steps);
+    if (wrong.fault != ReceiverFault::none) {
+        return fault(wrong.fault, frame_id, wrong.axis);
+    }
+    const std::uint32_t lost = last.is_known ? steps - 1 : 0;
+    if (lost != 0) {
+        losses_.good_in_row = 0;
+        count_loss(lost);
+    }
+    losses_.level -= losses_.level > 0 ? 1 : 0;
+    if (losses_.level > kLossLimit) {
+        return fault(ReceiverFault::loss_limit, frame_id);
+    }
+    counters_.late += age_us > set_.sample_us ? 1 : 0;
+    if (last.is_known) {
+        last.sample += steps;
+    } else if (last.has_history) {  // after an acknowledge: by the clock, at least one
+        const std::int64_t gap_us = latch.time_us - last.latched_us;
+        last.sample +=
+            static_cast<std::uint64_t>(std::max<std::int64_t>(1, gap_us / set_.sample_us));
+    }
+    session_.number(latch.sync_counter, last);
+    last.is_known = last.has_history = true;
+    last.index = samples_.set.index;
+    last.sync_counter = latch.sync_counter;
+    last.latched_us = latch.time_us;
+    last.base_us = latch.base_us;
+    samples_.steps = 0;
+    snapshot.latched_us = latch.time_us;
+    snapshot.arrived_us = samples_.now_us;
+    snapshot.sample = last.sample;
+    ++counters_.snapshots;
+    losses_.good_in_row = static_cast<std::uint8_t>(std::min(losses_.good_in_row + 1, 255));
+    if (state_ == ReceiverState::init && losses_.good_in_row >= rules_.init_snapshots &&
+        heartbeat_.is_fresh(samples_.now_us) && is_period_shown()) {
+        state_ = ReceiverState::valid;
+    }
+    ReceiverEvent event = this->event();
+    event.kind = ReceiverEvent::Kind::snapshot;
+    event.sync_counter = latch.sync_counter;
+    event.samples_lost = lost;
+    event.snapshot = snapshot;
+    return event;
 }
 
 void AxisReceiver::count_loss(std::uint32_t lost) noexcept {
     counters_.samples_lost += lost;
-    loss_level_ += kLossWeight * std::min<std::uint32_t>(lost, kLossLimit);
+    losses_.level += kLossWeight * std::min<std::uint32_t>(lost, kLossLimit);
 }
 
 }  // namespace axg

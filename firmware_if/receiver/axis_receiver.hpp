@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Frames in, coherent axis snapshots out; everything else is a fault with one name and one
-// reaction. Fed frame by frame and by a clock tick; bounded work, no allocation, no clock.
-// Rules and fault table: docs/reference/protocol.md.
+// reaction. Common to all formats; set-up makes the assembler of the format (assembler.hpp). Fed
+// frame by frame and by a clock tick; bounded work, no allocation, no clock. Rules and fault table:
+// docs/reference/protocol.md. Tests: tests/unit/firmware_if/receiver/README.md.
 #pragma once
 
 #include <array>
@@ -11,9 +12,10 @@
 
 #include "core/machine/axis_snapshot.hpp"
 #include "firmware_if/protocol/axis_frames.hpp"
-#include "firmware_if/protocol/e2e.hpp"
-#include "firmware_if/receiver/arrival_anchor.hpp"
+#include "firmware_if/receiver/assembler.hpp"
+#include "firmware_if/receiver/frame_gate.hpp"
 #include "firmware_if/receiver/period_watch.hpp"
+#include "firmware_if/receiver/received_samples.hpp"
 #include "firmware_if/receiver/receiver_faults.hpp"
 #include "firmware_if/receiver/session_watch.hpp"
 #include "firmware_if/receiver/snapshot_check.hpp"
@@ -24,9 +26,6 @@ namespace axg {
 // row stop at once.
 inline constexpr std::uint32_t kLossWeight = 3;  // added by a lost sample; a good one subtracts 1
 inline constexpr std::uint32_t kLossLimit = 60;
-
-// A board sends its session every 100 ms: two lost in a row are tolerated.
-inline constexpr std::int64_t kSessionTimeoutUs = 300'000;
 
 /// INVALID ends only by acknowledge(). Only VALID allows a permit.
 enum class ReceiverState : std::uint8_t { invalid = 0, init, valid };
@@ -45,14 +44,6 @@ struct ReceiverEvent {
     std::uint32_t samples_lost = 0;  // snapshot: samples missing between the last one and this
     AxisSnapshot snapshot;           // valid for kind snapshot
     PathPoints look_ahead;  // valid for kind look_ahead: samples counted as in the snapshots
-};
-
-/// The CRC of a permit covers these: the board's nonce, and the lap of the sample.
-struct SampleSession {
-    std::uint32_t nonce = 0;
-    std::uint16_t lap = 0;
-
-    friend constexpr bool operator==(const SampleSession&, const SampleSession&) = default;
 };
 
 struct ReceiverCounters {
@@ -97,11 +88,6 @@ struct ReceiverOptions {
 /// For lists of unmeasured promises: the promise about the period; empty: it is measured.
 [[nodiscard]] std::string_view unmeasured_period(const CanLayout& can) noexcept;
 
-/// The fault of a frame with this decoder status.
-[[nodiscard]] ReceiverFault fault_of(FrameStatus status) noexcept;
-
-static_assert(kAxisFramesMax < 64, "a bit for each frame of a snapshot");
-
 class AxisReceiver {
   public:
     explicit AxisReceiver(const Machine& machine, ReceiverOptions options = {}) noexcept;
@@ -120,19 +106,22 @@ class AxisReceiver {
     /// Whether a window has shown since the last acknowledge that the period is right. Also true if
     /// nothing measures the period, or if `period` is not `proven`.
     [[nodiscard]] bool is_period_shown() const noexcept {
-        const bool are_shown =
-            shows_sync_period_ && (shows_sender_period_ || set_.format != CanFormat::fd);
-        return are_shown || options_.period != PeriodUse::proven || !measures_period_;
+        return !rules_.needs_period || (samples_.by_sync.is_shown && samples_.by_sender.is_shown);
     }
     /// Treats the period as shown, for a recording that begins in the middle.
-    void suppose_period() noexcept { shows_sync_period_ = shows_sender_period_ = true; }
+    void suppose_period() noexcept {
+        samples_.by_sync.is_shown = samples_.by_sender.is_shown = true;
+    }
 
     /// Session of the newest sample with this SYNC counter, one of the last 240. Empty: the board
     /// has sent no session, or the last one is older than kSessionTimeoutUs.
-    [[nodiscard]] std::optional<SampleSession> session_of(std::uint8_t sync_counter) const noexcept;
+    [[nodiscard]] std::optional<SampleSession> session_of(
+        std::uint8_t sync_counter) const noexcept {
+        return session_.of(sync_counter, samples_);
+    }
     /// SYNC counter of the newest sample; 0: there was none.
     [[nodiscard]] std::uint8_t newest_sync_counter() const noexcept {
-        return has_last_ ? last_sync_counter_ : std::uint8_t{0};
+        return samples_.last.is_known ? samples_.last.sync_counter : std::uint8_t{0};
     }
 
     [[nodiscard]] ReceiverState state() const noexcept { return state_; }
@@ -141,131 +130,52 @@ class AxisReceiver {
     [[nodiscard]] const ReceiverCounters& counters() const noexcept { return counters_; }
 
   private:
-    struct Slot {
-        SequenceCheck sequence;
-        std::array<std::uint8_t, 64> payload{};  // of the last frame used
+    /// As a machine file states them.
+    struct Rules {
+        std::int64_t stale_after_us = 0;
+        std::uint8_t init_snapshots = 2;
+        bool refuse_local = false;
+        bool needs_period = false;  // VALID waits until the period is shown
     };
-    struct SyncStamp {
-        std::uint8_t counter = 0;  // 0: none
-        std::int64_t time_us = 0;
-    };
-    struct Latch {
-        bool is_known = false;
-        std::int64_t time_us = 0;
-        std::uint8_t sync_counter = 0;
-        std::int64_t base_us = 0;  // sync_base_us_ if this sample is used
-    };
-
-    /// Frames of the drives after one SYNC (format cia402).
-    struct DriveGroup {
-        bool is_open = false;     // process data may come
-        bool is_suspect = false;  // a frame of an earlier group may still be on its way
-        std::int64_t sync_us = 0;
-        std::uint8_t sync_counter = 0;  // 0: SYNC is empty
-        std::uint32_t steps = 0;        // periods since the last snapshot
-        bool has_sync = false;          // the two above are of a SYNC that came
+    /// Frames without positions; their order counts where ids coincide.
+    enum class Kind : std::uint8_t { sync, heartbeat, session, look_ahead, none };
+    struct Losses {
+        std::uint32_t level = 0;
+        std::uint8_t good_in_row = 0;
     };
 
     void advance_clock(std::int64_t time_us) noexcept;
     void forget() noexcept;
     ReceiverEvent event() const noexcept;
+    /// A fault with its reaction; none: no event.
     ReceiverEvent fault(ReceiverFault kind, std::uint32_t frame_id = 0,
                         std::uint32_t axis = kNoIndex) noexcept;
     ReceiverEvent check_clock() noexcept;
     ReceiverEvent on_error_frame(const CanFrame& frame) noexcept;
-    ReceiverEvent on_sync(const CanFrame& frame) noexcept;
     ReceiverEvent on_heartbeat(const CanFrame& frame) noexcept;
-    ReceiverEvent on_drive_sync(const CanFrame& frame) noexcept;
+    ReceiverEvent on_session_frame(const CanFrame& frame) noexcept;
     ReceiverEvent on_axis_frame(const CanFrame& frame, std::uint32_t slot) noexcept;
     ReceiverEvent on_look_ahead_frame(const CanFrame& frame) noexcept;
-    ReceiverEvent on_session_frame(const CanFrame& frame) noexcept;
-    void number_sample(std::uint8_t sync_counter) noexcept;
-    [[nodiscard]] bool is_flood() noexcept;
-    ReceiverEvent check_counter(const CanFrame& frame, std::uint8_t counter, Slot& known) noexcept;
-    ReceiverEvent assemble(const AxisFrameContent& content, std::uint32_t slot,
-                           std::uint32_t frame_id) noexcept;
-    ReceiverEvent assemble_signals(const AxisFrameContent& content, std::uint32_t slot,
-                                   std::uint32_t frame_id) noexcept;
-    ReceiverEvent assemble_drives(const AxisFrameContent& content, std::uint32_t slot,
-                                  const CanFrame& frame) noexcept;
-    void begin_set(std::uint8_t sample_index) noexcept;
-    void add_to_set(const AxisFrameContent& content, std::uint32_t slot) noexcept;
-    [[nodiscard]] bool is_complete() const noexcept;
-    ReceiverEvent finish(const AxisFrameContent& content, std::uint32_t frame_id) noexcept;
-    ReceiverEvent deliver(Latch latch, std::uint32_t steps, std::uint32_t frame_id) noexcept;
-    [[nodiscard]] Latch latch_of(std::uint8_t sample_index, std::uint32_t steps) noexcept;
-    /// sender_clock or sync_period; none: the sample may be used.
-    [[nodiscard]] ReceiverFault judge_sender_clock(std::uint32_t sender_us, Latch& latch) noexcept;
-    [[nodiscard]] bool is_period_wrong(PeriodWatch& watch, std::int64_t steps,
-                                       std::int64_t stamp_us) noexcept;
-    [[nodiscard]] Latch dated(std::int64_t stamp_us, std::uint8_t sync_counter,
-                              std::uint32_t steps) const noexcept;
-    [[nodiscard]] bool is_native() const noexcept {
-        return set_.format == CanFormat::classical || set_.format == CanFormat::fd;
-    }
-    [[nodiscard]] bool is_heartbeat_fresh() const noexcept;
+    ReceiverEvent conclude(const Assembly& assembly, std::uint32_t frame_id) noexcept;
+    ReceiverEvent deliver(const Latch& latch, std::uint32_t steps, std::uint32_t frame_id) noexcept;
     void count_loss(std::uint32_t lost) noexcept;
 
     AxisFrameSet set_;
+    Rules rules_;
+    std::array<std::uint32_t, 4> ids_{};  // by Kind; kNoIndex: the format has none
     SnapshotCheck check_;
-    ReceiverOptions options_;
-    std::int64_t stale_after_us_ = 0;
-    std::int64_t heartbeat_timeout_us_ = 0;
-    std::int64_t sync_window_us_ = 0;
-    std::uint32_t index_modulus_ = 16;
-    std::uint8_t init_snapshots_ = 2;
+    // Of each axis frame; the last one is of the look-ahead path.
+    std::array<LastFrame, kAxisFramesMax + 1> last_frames_{};
+    SessionLaps session_;
+    HeartbeatWatch heartbeat_;
+    FloodWindow flood_;
+    ReceivedSamples samples_;
+    Assembler assembler_;
+    Losses losses_;
 
     ReceiverState state_ = ReceiverState::invalid;
     ReceiverFault stop_cause_ = ReceiverFault::none;
     ReceiverCounters counters_;
-    std::int64_t now_us_ = INT64_MIN;
-
-    std::array<Slot, kAxisFramesMax> slots_{};
-    Slot look_ahead_slot_;
-    SequenceCheck sync_sequence_;
-    std::array<SyncStamp, 16> sync_stamps_{};
-    SyncStamp last_sync_;
-    std::int64_t heartbeat_us_ = 0;
-
-    std::int64_t window_us_ = INT64_MIN;  // start of the period in which frames are counted
-    std::uint32_t window_frames_ = 0;
-    bool has_heartbeat_ = false;
-
-    Slot session_slot_;
-    SessionWatch session_;
-    std::int64_t session_us_ = 0;    // of the last session frame that agreed
-    std::uint64_t sync_sample_ = 0;  // counts as SYNC does: its counter is that of the last sample
-
-    PeriodWatch sync_period_;    // by SYNC; format signals: by arrival
-    PeriodWatch sender_period_;  // format fd: by the sender's clock
-    bool measures_period_ = true;
-    // By SYNC and by the sender's clock, which may be wrong by as much as the period.
-    bool shows_sync_period_ = false, shows_sender_period_ = false;
-
-    DriveGroup drives_;
-    ArrivalAnchor arrivals_;           // format signals
-    std::uint32_t arrival_steps_ = 0;  // periods since the last snapshot
-    std::uint64_t seen_ = 0;           // bit per axis frame of the set being assembled; 0: none is
-    std::int64_t set_first_us_ = 0;
-    AxisSnapshot snapshot_;  // being assembled
-    std::array<std::int64_t, kAxesMax> raw_{};
-
-    std::uint8_t set_index_ = 0;
-    bool has_last_ = false;
-    std::uint8_t last_index_ = 0;
-    std::uint8_t last_sync_counter_ = 0;
-    std::uint32_t loss_level_ = 0;
-    std::int64_t last_latched_us_ = 0;
-    std::int64_t sync_base_us_ = 0;  // of the last snapshot: its SYNC, without what a queue added
-    std::uint64_t last_sample_ = 0;
-    bool has_history_ = false;  // a snapshot was handed out, before an acknowledge perhaps
-    std::uint8_t good_in_row_ = 0;
-    std::uint8_t estimates_ = 0;
-    bool has_sender_ = false;
-    std::uint8_t sender_index_ = 0;  // of the sample that the sender's clock dated last
-    std::uint32_t last_sender_us_ = 0;
-    std::int64_t sender_offset_us_ = 0;   // smallest (our clock - sender's clock) seen, leaking
-    std::int64_t sender_elapsed_us_ = 0;  // sender's clock, unwrapped
 };
 
 }  // namespace axg

@@ -1,110 +1,117 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the process data of drives to one snapshot (format cia402). Drives latch their positions as
-// SYNC ends and number nothing: only time shows which frames belong together. After any event that
-// may have mixed two instants, a whole group is discarded. Rules: docs/reference/protocol.md.
+// Process data of drives (format cia402), and SYNC of all formats that have one.
 #include <algorithm>
 #include <cstdlib>
 
-#include "firmware_if/receiver/axis_receiver.hpp"
+#include "firmware_if/receiver/assembler.hpp"
 
 namespace axg {
 namespace {
 
-constexpr std::uint32_t kStepsMax = 1'000'000;
+constexpr std::int64_t kStepsMax = 1'000'000;
+
+ReceiverFault fault_of_sync(SyncWatch& sync, const CanFrame& frame) noexcept {
+    const ReceiverFault shape = shape_of(frame, sync.counter_max != 0 ? 1 : 0);
+    if (shape != ReceiverFault::none || sync.counter_max == 0) {
+        return shape;
+    }
+    const std::uint8_t counter = frame.data[0];
+    if (counter < 1 || counter > sync.counter_max) {
+        return ReceiverFault::bad_format;
+    }
+    const Sequence sequence = sync.sequence.next(static_cast<std::uint16_t>(counter - 1));
+    return sequence == Sequence::repeated ? ReceiverFault::repeated
+           : sequence == Sequence::wrong  ? ReceiverFault::wrong_sequence
+                                          : ReceiverFault::none;
+}
 
 }  // namespace
 
-ReceiverEvent AxisReceiver::on_drive_sync(const CanFrame& frame) noexcept {
-    const std::uint8_t counter_max = set_.sync_counter_max;
-    const std::uint8_t counter = counter_max != 0 ? frame.data[0] : 0;
-    ReceiverFault wrong = ReceiverFault::none;
-    if (frame.fd || frame.raw_dlc != 0) {
-        wrong = frame.fd ? ReceiverFault::bad_format : ReceiverFault::raw_dlc;
-    } else if (frame.length_bytes != (counter_max != 0 ? 1 : 0)) {
-        wrong = ReceiverFault::bad_length;
-    } else if (counter_max != 0 && (counter < 1 || counter > counter_max)) {
-        wrong = ReceiverFault::bad_format;
-    } else if (counter_max != 0) {
-        const Sequence sequence = sync_sequence_.next(static_cast<std::uint16_t>(counter - 1));
-        wrong = sequence == Sequence::repeated ? ReceiverFault::repeated
-                : sequence == Sequence::wrong  ? ReceiverFault::wrong_sequence
-                                               : ReceiverFault::none;
+SyncWatch::Step SyncWatch::judge(const CanFrame& frame, std::int64_t period_us) noexcept {
+    Step step{.fault = fault_of_sync(*this, frame)};
+    if (!is_known) {
+        return step;
     }
-    const std::int64_t period_us = set_.sample_us;
-    const std::int64_t elapsed_us = frame.time_us - drives_.sync_us;
-    std::int64_t steps = 1;
-    if (drives_.has_sync && counter_max != 0) {
-        steps = (counter + counter_max - drives_.sync_counter) % counter_max;
-    } else if (drives_.has_sync) {
-        steps = std::clamp<std::int64_t>((elapsed_us + period_us / 2) / period_us, 0, kStepsMax);
-        wrong =
-            wrong == ReceiverFault::none && steps == 0 ? ReceiverFault::sync_early_or_late : wrong;
+    const std::int64_t elapsed_us = frame.time_us - time_us;
+    if (counter_max != 0) {
+        step.periods = (frame.data[0] + counter_max - counter) % counter_max;
+    } else {
+        step.periods =
+            std::clamp<std::int64_t>((elapsed_us + period_us / 2) / period_us, 0, kStepsMax);
+        if (step.fault == ReceiverFault::none && step.periods == 0) {
+            step.fault = ReceiverFault::sync_early_or_late;
+        }
     }
-    const bool is_whole = drives_.is_open && is_complete();
-    const bool is_torn = drives_.is_open && !is_whole;
-    drives_.is_open = wrong == ReceiverFault::none;
-    // Our clock was set back: it measures nothing across that, and this stamp may be the only one.
-    const bool is_set_back = drives_.has_sync && elapsed_us < 0;
-    if (wrong == ReceiverFault::wrong_sequence || is_set_back) {
-        restart(sync_period_);
+    step.is_in_time = std::abs(elapsed_us - step.periods * period_us) <= period_us / 5;
+    step.is_set_back = elapsed_us < 0;
+    return step;
+}
+
+Assembly SyncWatch::take(const CanFrame& frame, const Step& step, bool is_torn,
+                         ReceivedSamples& samples) noexcept {
+    is_known = true;
+    counter = counter_max != 0 ? frame.data[0] : 0;
+    time_us = frame.time_us;
+    const bool is_wrong =
+        !step.is_set_back && samples.is_period_wrong(samples.by_sync, step.periods, frame.time_us);
+    return {.fault = is_wrong           ? ReceiverFault::sync_period
+                     : is_torn          ? ReceiverFault::torn
+                     : !step.is_in_time ? ReceiverFault::sync_early_or_late
+                                        : ReceiverFault::none,
+            .begins_period = true};
+}
+
+DriveAssembler::DriveAssembler(const CanLayout& can, const AxisFrameSet& set) noexcept
+    : window_us_(can.sync_window_us != 0 ? can.sync_window_us : can.sample_us),
+      sync_{.counter_max = set.sync_counter_max,
+            .sequence = sequence_of(can, set.sync_counter_max)} {}
+
+void DriveAssembler::forget() noexcept {
+    sync_.forget();
+    is_open_ = is_suspect_ = false;
+}
+
+Assembly DriveAssembler::on_sync(const CanFrame& frame, ReceivedSamples& samples) noexcept {
+    const SyncWatch::Step step = sync_.judge(frame, samples.period_us);
+    const bool is_whole = is_open_ && samples.set.is_complete();
+    const bool is_torn = is_open_ && !is_whole;
+    is_open_ = step.fault == ReceiverFault::none;
+    if (step.fault == ReceiverFault::wrong_sequence || step.is_set_back) {
+        restart(samples.by_sync.watch);
     }
-    if (wrong != ReceiverFault::none) {
-        return fault(wrong, frame.id);  // drives may react to it: no data until the next good one
+    if (!is_open_) {
+        return {.fault = step.fault};  // drives may react to it: no data until the next good one
     }
     // Frames missing from the group before, or sent after a SYNC that was lost here, may still
     // arrive and would look like this group's.
-    drives_.is_suspect = drives_.has_sync && (!is_whole || steps > 1);
-    const bool is_in_time =
-        !drives_.has_sync || std::abs(elapsed_us - steps * period_us) <= period_us / 5;
-    drives_.steps = static_cast<std::uint32_t>(
-        std::min<std::int64_t>(kStepsMax, std::int64_t{drives_.steps} + steps));
-    drives_.has_sync = true;
-    drives_.sync_us = frame.time_us;
-    drives_.sync_counter = counter;
-    begin_set(0);
-    window_us_ = now_us_;
-    window_frames_ = 0;
-    if (!is_set_back && is_period_wrong(sync_period_, steps, frame.time_us)) {
-        return fault(ReceiverFault::sync_period, frame.id);
-    }
-    if (is_torn) {
-        return fault(ReceiverFault::torn, frame.id);
-    }
-    return is_in_time ? event() : fault(ReceiverFault::sync_early_or_late, frame.id);
+    is_suspect_ = sync_.is_known && (!is_whole || step.periods > 1);
+    samples.steps = static_cast<std::uint32_t>(std::min(kStepsMax, samples.steps + step.periods));
+    samples.begin(0);
+    return sync_.take(frame, step, is_torn, samples);
 }
 
-ReceiverEvent AxisReceiver::assemble_drives(const AxisFrameContent& content, std::uint32_t slot,
-                                            const CanFrame& frame) noexcept {
-    if (!drives_.is_open) {
-        return fault(ReceiverFault::sync_missing, frame.id);
+Assembly DriveAssembler::on_axis(const AxisFrame& axis, ReceivedSamples& samples) noexcept {
+    if (!is_open_) {
+        return {.fault = ReceiverFault::sync_missing};
     }
-    if (now_us_ - drives_.sync_us > sync_window_us_) {
-        return fault(ReceiverFault::late_sample, frame.id);
+    if (samples.now_us - sync_.time_us > window_us_) {
+        return {.fault = ReceiverFault::late_sample};
     }
-    Slot& known = slots_[slot];
-    if ((seen_ >> slot & 1U) != 0) {
-        if (drives_.is_suspect) {
-            return fault(ReceiverFault::late_sample, frame.id);
-        }
-        const auto* end = frame.data.data() + frame.length_bytes;
-        const bool is_same = std::equal(frame.data.data(), end, known.payload.data());
-        return fault(is_same ? ReceiverFault::repeated : ReceiverFault::spoofed, frame.id);
+    SampleSet& set = samples.set;
+    if (set.has(axis.slot)) {
+        return {.fault =
+                    is_suspect_ ? ReceiverFault::late_sample : axis.last.repeat_of(axis.frame)};
     }
-    known.payload = frame.data;
-    add_to_set(content, slot);
-    if (!is_complete()) {
-        return event();
+    axis.last.payload = axis.frame.data;
+    set.add(axis.content, axis.slot);
+    if (!set.is_complete()) {
+        return {};
     }
-    if (drives_.is_suspect) {
-        return fault(ReceiverFault::late_sample, frame.id);
+    if (is_suspect_) {
+        return {.fault = ReceiverFault::late_sample};
     }
-    const std::uint32_t steps = std::max(1U, drives_.steps);
-    const Latch latch = dated(drives_.sync_us, drives_.sync_counter, steps);
-    const ReceiverEvent event = deliver(latch, steps, frame.id);
-    if (event.kind == ReceiverEvent::Kind::snapshot) {
-        drives_.steps = 0;
-    }
-    return event;
+    const std::uint32_t steps = std::max(1U, samples.steps);
+    return {.steps = steps, .latch = samples.dated(sync_.time_us, sync_.counter, steps)};
 }
 
 }  // namespace axg

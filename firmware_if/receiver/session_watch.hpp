@@ -5,11 +5,25 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "firmware_if/protocol/axis_frames.hpp"
 #include "firmware_if/protocol/permit_frames.hpp"
+#include "firmware_if/receiver/frame_gate.hpp"
+#include "firmware_if/receiver/received_samples.hpp"
 
 namespace axg {
+
+// A board sends its session every 100 ms: two lost in a row are tolerated.
+inline constexpr std::int64_t kSessionTimeoutUs = 300'000;
+
+/// The CRC of a permit covers these: the board's nonce, and the lap of the sample.
+struct SampleSession {
+    std::uint32_t nonce = 0;
+    std::uint16_t lap = 0;
+
+    friend constexpr bool operator==(const SampleSession&, const SampleSession&) = default;
+};
 
 enum class SessionStatus : std::uint8_t {
     begun,    // the first one, or one with another nonce: a person armed the board
@@ -52,6 +66,55 @@ class SessionWatch {
     bool has_session_ = false;
     std::uint32_t nonce_ = 0;
     std::uint16_t offset_ = 0;  // the board's lap less the receiver's
+};
+
+/// The sessions of a receiver, and its samples as they count them.
+struct SessionLaps {
+    LastFrame frame;
+    SessionWatch watch;
+    std::int64_t time_us = 0;  // of the last session frame that agreed
+    std::uint64_t newest = 0;  // counts as SYNC does: its counter is that of the last sample
+
+    /// Numbers the sample after `last` by its counter, across lost samples too; the next session
+    /// frame reveals whole laps that were lost.
+    void number(std::uint8_t sync_counter, const LastSample& last) noexcept {
+        // One lap more at first, so that a sample of the lap before has a number too.
+        newest = last.is_known ? newest + before(last.sync_counter, sync_counter)
+                               : kSyncCounterMax + sync_counter - 1U;
+    }
+    /// Without a sample there are no laps to number: the next frame comes in 100 ms.
+    [[nodiscard]] ReceiverFault on_session(const CanFrame& received, const Session& session,
+                                           const ReceivedSamples& samples) noexcept {
+        const ReceiverFault wrong = frame.judge(received, session.counter);
+        if (wrong != ReceiverFault::none || !samples.last.is_known) {
+            return wrong;
+        }
+        if (watch.on_session(session, newest) == SessionStatus::held_up) {
+            return ReceiverFault::held_up;
+        }
+        time_us = samples.now_us;
+        return ReceiverFault::none;
+    }
+    [[nodiscard]] std::optional<SampleSession> of(std::uint8_t sync_counter,
+                                                  const ReceivedSamples& samples) const noexcept {
+        const bool is_counter = sync_counter >= 1 && sync_counter <= kSyncCounterMax;
+        if (!is_counter || !samples.last.is_known || !watch.has_session() ||
+            samples.now_us - time_us > kSessionTimeoutUs) {
+            return std::nullopt;
+        }
+        const std::uint64_t sample = newest - before(sync_counter, samples.last.sync_counter);
+        return SampleSession{.nonce = watch.nonce(), .lap = watch.lap_of(sample)};
+    }
+    void forget() noexcept {
+        frame.sequence.reset();
+        watch = {};
+    }
+
+  private:
+    /// Samples from one counter to the next occurrence of another.
+    [[nodiscard]] static std::uint32_t before(std::uint8_t from, std::uint8_t to) noexcept {
+        return (to + std::uint32_t{kSyncCounterMax} - from) % kSyncCounterMax;
+    }
 };
 
 }  // namespace axg

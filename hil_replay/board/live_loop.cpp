@@ -83,8 +83,7 @@ bool LiveLoop::is_of_a_board(const CanFrame& frame) const noexcept {
     if (is_axis || frame.extended) {
         return is_axis;
     }
-    return (set_.format != CanFormat::signals &&
-            (frame.id == set_.sync_id || frame.id == set_.heartbeat_id)) ||
+    return (has_sync(*set_.wire) && (frame.id == set_.sync_id || frame.id == set_.heartbeat_id)) ||
            (set_.look_ahead_samples != 0 && frame.id == set_.look_ahead_id) ||
            (set_.session_id != 0 && frame.id == set_.session_id) ||
            (can_.hashes_out_id != 0 && frame.id == can_.hashes_in_id);

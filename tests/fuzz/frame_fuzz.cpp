@@ -18,7 +18,7 @@ namespace {
 constexpr std::uint32_t kLookAhead = 20;
 
 void seal(const axg::AxisFrameSet& set, axg::CanFrame& frame) {
-    if (set.format == axg::CanFormat::cia402) {
+    if (set.wire->format == axg::CanFormat::cia402) {
         return;  // drives send no checksum
     }
     if (set.look_ahead_samples != 0 && frame.id == set.look_ahead_id &&
@@ -31,7 +31,7 @@ void seal(const axg::AxisFrameSet& set, axg::CanFrame& frame) {
         if (frame.id != set.ids[slot] || frame.length_bytes != set.frame_bytes[slot]) {
             continue;
         }
-        if (set.format == axg::CanFormat::fd) {
+        if (set.wire->format == axg::CanFormat::fd) {
             axg::p05_protect({frame.data.data(), frame.length_bytes}, set.data_ids[slot],
                              frame.data[2]);
         } else {

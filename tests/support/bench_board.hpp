@@ -520,7 +520,7 @@ class BenchBoard {
             ids[i] = {set_.ids[i], set_.data_ids[i]};
         }
         std::array<axg_board_can_frame, AXG_BOARD_CLASSICAL_FRAMES_MAX> frames{};
-        const bool is_fd = set_.format == CanFormat::fd;
+        const bool is_fd = set_.wire->format == CanFormat::fd;
         axg_board saved = board_;
         if (is(Broken::acks_without_promise)) {
             board_.options.cap_kind = AXG_BOARD_CAP_ENFORCED;

@@ -495,7 +495,7 @@ void expect_decoded(const Machine& machine, const std::vector<FrameLine>& lines,
         if (content.has_tool) {
             EXPECT_EQ(content.tool, shown.snapshot.tool);
         }
-        if (set.format != CanFormat::cia402 && content.has_status) {
+        if (set.wire->format != CanFormat::cia402 && content.has_status) {
             EXPECT_EQ(content.mode, shown.snapshot.mode);
         }
         EXPECT_EQ(content.drive_in_fault, kNoIndex);
