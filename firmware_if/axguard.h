@@ -240,6 +240,11 @@ AXG_API axg_status axg_guard_notify(axg_guard* guard, int32_t event, int64_t now
 // Returns "cutter - c", valid until axg_guard_destroy; "" for AXG_NO_PAIR and invalid pairs.
 AXG_API const char* axg_guard_pair_name(const axg_guard* guard, uint32_t pair);
 
+// Writes why the guard is stopped, and what leads out, in lines; "" in every other phase.
+// @param state  of the last axg_guard_process
+AXG_API void axg_guard_explain(const axg_guard* guard, const axg_state* state, char* text,
+                               size_t text_bytes);
+
 // Returns what the machine file states for a board; also before the start.
 AXG_API axg_status axg_guard_terms(const axg_guard* guard, axg_terms* out);
 

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <memory>
 #include <new>
 #include <optional>
@@ -25,6 +26,7 @@
 #include "firmware_if/setup/guard_engine.hpp"
 #include "firmware_if/setup/guard_parts.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
+#include "firmware_if/setup/why_sentences.hpp"
 
 static_assert(AXG_SAMPLE_FRAMES_MAX >= axg::kFramesPerSnapshotMax);
 static_assert(sizeof(axg_latch) == sizeof(axg::LatchCell) &&
@@ -38,6 +40,7 @@ struct axg_guard {
     [[nodiscard]] bool has_all() const noexcept { return parts.fault().empty(); }
 
     axg::LoadedMachine loaded;
+    std::string file;                // the machine file, without its folder
     std::vector<std::string> pairs;  // names
     axg::GuardParts parts;
     std::string words;  // the fault, if a part is missing
@@ -52,6 +55,7 @@ struct axg_guard {
     const char* refused = "";
     const char* bus_fault = "";
     std::atomic<bool> has_query{false};
+    std::atomic<std::int32_t> unknown_tool{-1};  // of the newest sample; -1: its tool is known
     axg::SampleFrames samples;
     std::uint32_t version;  // of the header that the host was compiled with
     axg::LiveResult last;   // the newest of a sample
@@ -176,7 +180,14 @@ void take_notes(axg_guard& guard) noexcept {
             case LiveNote::Kind::refused:
                 guard.refused = note.words;
                 break;
-            default:  // phases are in the state; lost notes have no field there
+            case LiveNote::Kind::phase:
+                if (note.phase == GuardPhase::init) {  // reset: those of the stop are over
+                    guard.input_fault = axg::ReceiverFault::none;
+                    guard.input_frame = 0;
+                    guard.bus_fault = "";
+                }
+                break;
+            default:  // lost notes have no field
                 break;
         }
     }
@@ -254,10 +265,40 @@ axg_state state_of(const axg_guard& guard) noexcept {
     return state;
 }
 
+/// The guard's own enum values: `state` has their names.
+axg::StopAccount account_of(const axg_guard& guard, const axg_state& state) {
+    const axg::GuardNode& live = *guard.guard;
+    axg::StopAccount out{.cause = live.guard().cause,
+                         .reason = live.reason(),
+                         .a = {},
+                         .b = {},
+                         .detail = {},
+                         .file = guard.file,
+                         .unknown_tool = {}};
+    if (out.cause == axg::GuardFault::verdict && state.pair < guard.loaded.machine.pairs.size()) {
+        const axg::Pair& pair = guard.loaded.machine.pairs[state.pair];
+        out.a = guard.loaded.machine.bodies[pair.a].name;
+        out.b = guard.loaded.machine.bodies[pair.b].name;
+    }
+    if (out.cause == axg::GuardFault::input) {
+        out.detail = guard.input_fault == axg::ReceiverFault::none
+                         ? guard.bus_fault
+                         : std::string(state.input_fault) + " (" +
+                               axg::fault_row(guard.input_fault).meaning + ")";
+    } else if (out.cause == axg::GuardFault::output) {
+        out.detail = state.bus_fault;
+    }
+    if (const std::int32_t tool = guard.unknown_tool.load(); tool >= 0) {
+        out.unknown_tool = static_cast<std::uint16_t>(tool);
+    }
+    return out;
+}
+
 }  // namespace
 
 axg_guard::axg_guard(axg::LoadedMachine&& machine, const axg_options& wanted)
     : loaded(std::move(machine)),
+      file(std::filesystem::path(wanted.machine_file).filename()),
       parts(loaded, wanted.mode == AXG_MODE_STOPPABLE),
       samples(loaded.machine),
       version(wanted.version) {
@@ -408,6 +449,12 @@ axg_status axg_guard_evaluate(axg_guard* guard) {
     guard->has_query.store(false);
     const axg::LiveEngine live{.machine = guard->loaded.machine, .chain = *guard->chain};
     axg::run_queries(live, guard->queues, [guard](const axg::LiveResult& live_result) {
+        if (live_result.kind == axg::LiveQuery::Kind::snapshot) {
+            const axg::CycleResult& result = live_result.result;
+            guard->unknown_tool.store(result.reason == axg::StopReason::tool
+                                          ? guard->chain->refused(result).snapshot.tool
+                                          : -1);
+        }
         // Full only if no thread processes; then no thread needs it.
         [[maybe_unused]] const bool is_kept = guard->undated.push(live_result);
     });
@@ -457,6 +504,24 @@ axg_status axg_guard_notify(axg_guard* guard, int32_t event, int64_t now_us) {
 
 const char* axg_guard_pair_name(const axg_guard* guard, uint32_t pair) {
     return guard == nullptr || pair >= guard->pairs.size() ? "" : guard->pairs[pair].c_str();
+}
+
+void axg_guard_explain(const axg_guard* guard, const axg_state* state, char* text,
+                       size_t text_bytes) {
+    put_text("", text, text_bytes);
+    if (guard == nullptr || !guard->guard || state == nullptr ||
+        state->phase != AXG_PHASE_STOPPED) {
+        return;
+    }
+    try {
+        std::string words;
+        for (const std::string& sentence : axg::stop_sentences(account_of(*guard, *state))) {
+            words += (words.empty() ? "" : "\n") + sentence;
+        }
+        put_text(words, text, text_bytes);
+    } catch (...) {
+        put_text("stopped: out of memory for its words", text, text_bytes);
+    }
 }
 
 axg_status axg_guard_terms(const axg_guard* guard, axg_terms* out) {

@@ -132,6 +132,16 @@ static const char* phase_name(axg_phase phase) {
     return names[phase];
 }
 
+// Prints why the guard is stopped, and what leads out: the first line behind `head`.
+static void print_why(host* host, const char* head) {
+    char text[TEXT_BYTES];
+    axg_guard_explain(host->guard, &host->state, text, sizeof text);
+    for (char *line = text, *rest = NULL; (line = strtok_r(line, "\n", &rest)); line = NULL) {
+        fprintf(stderr, "%s%s\n", head, line);
+        head = "  ";
+    }
+}
+
 static void say(host* host) {
     const axg_state* const state = &host->state;
     if (host->has_said && state->phase == host->phase_said) {
@@ -139,13 +149,13 @@ static void say(host* host) {
     }
     host->has_said = true;
     host->phase_said = state->phase;
-    fprintf(stderr, "axguard-hal: %" PRId64 " us: %s", host->now_us, phase_name(state->phase));
+    char head[64];
+    snprintf(head, sizeof head, "axguard-hal: %" PRId64 " us: ", host->now_us);
     if (state->phase == AXG_PHASE_STOPPED && host->interface == NULL) {
-        fprintf(stderr, ": cause %s, reason %s, pair \"%s\", input %s, bus %s", state->cause,
-                state->reason, axg_guard_pair_name(host->guard, state->pair), state->input_fault,
-                state->bus_fault);
+        print_why(host, head);
+    } else {
+        fprintf(stderr, "%s%s\n", head, phase_name(state->phase));
     }
-    fprintf(stderr, "\n");
 }
 
 static void show(host* host) {
@@ -181,6 +191,7 @@ static void arm(host* host) {
     if (host->state.phase == AXG_PHASE_ARMED || host->now_us >= host->arm_until_us) {
         if (host->state.phase != AXG_PHASE_ARMED) {
             fprintf(stderr, "axguard-hal: not armed: %s\n", host->state.refused);
+            print_why(host, "  ");
         }
         host->arm_until_us = 0;
     }

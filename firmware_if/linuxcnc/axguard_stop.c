@@ -15,6 +15,7 @@
 
 #include "firmware_if/board/axguard_board.h"
 #include "firmware_if/linuxcnc/axguard_period.h"
+#include "firmware_if/linuxcnc/axguard_tool.h"
 #include "firmware_if/linuxcnc/axguard_wire.h"
 
 MODULE_AUTHOR("axguard");
@@ -40,15 +41,14 @@ typedef struct stop_pins {
     hal_bit_t* homed[AXG_WIRE_JOINTS_MAX];
     hal_bit_t* enable_in[AXG_WIRE_JOINTS_MAX];   // joint.N.amp-enable-out
     hal_bit_t* enable_out[AXG_WIRE_JOINTS_MAX];  // stays on until the ramp has ended
-    hal_bit_t *arm, *permit_ok, *feed_inhibit, *estop_ok, *stopping, *spindle_on, *home_unguarded;
+    hal_bit_t *arm, *permit_ok, *feed_inhibit, *estop_ok, *stopping, *spindle_on, *home_unguarded,
+        *change_unguarded;
     hal_float_t* adaptive_feed;
     hal_bit_t *tool_change, *tool_changed, *tool_change_out, *tool_changed_in, *jog, *jog_down;
     hal_s32_t *tool_number, *jog_joint;
     hal_u32_t *mode, *tool, *number, *cause, *refusal, *permits, *left, *simulation_wait_us,
         *unheard, *last_stop, *late;
 } stop_pins;
-
-typedef enum tool_step { TOOL_NONE, TOOL_WANTED, TOOL_OUT, TOOL_PERMIT, TOOL_DONE } tool_step;
 
 typedef struct stop_state {
     axg_board board;
@@ -67,8 +67,7 @@ typedef struct stop_state {
     uint32_t arms, arm_left, nonce;
     bool guard_is_ready;  // it sends no stop frame any more: a board armed before would stop again
     uint8_t hashes_wanted;
-    tool_step tool_step;
-    uint16_t tool;
+    axg_tool tool;
     bool is_jog, jogs_down;  // as the samples report it
     int jog_joint;
     uint64_t done;  // last sample with all replies received
@@ -118,8 +117,8 @@ static void begin(void) {
     const bool is_up = axg_board_power_up(&state.board, &options, state.nonce, now_us());
     axg_board_moves(&state.board, state.still < STILL_PERIODS, now_us());
     state.has_begun = is_complete && brakes && is_ours && is_up;
-    state.tool = (uint16_t)state.option[AXG_WIRE_TOOL];
-    state.tool_step = TOOL_NONE;
+    state.tool.number = (uint16_t)state.option[AXG_WIRE_TOOL];
+    state.tool.step = AXG_TOOL_NONE;
     state.hashes_wanted = 0;
     state.arm_left = 0;
     state.guard_is_ready = false;
@@ -218,7 +217,7 @@ static void arm(void) {
         return;
     }
     --state.arm_left;
-    if (!state.guard_is_ready || !state.period.is_shown) {
+    if (!state.guard_is_ready || !state.period.is_shown || axg_tool_is_unguarded(&state.tool)) {
         return;
     }
     const uint32_t step = (uint32_t)(rtapi_get_time() & 0xFFFF) | 1U;
@@ -226,7 +225,7 @@ static void arm(void) {
     if (axg_board_arm(&state.board, state.nonce, now_us()) == AXG_BOARD_ARMING_DONE) {
         state.arm_left = 0;
         state.is_latched = false;
-        state.tool_step = TOOL_NONE;
+        axg_tool_on_armed(&state.tool);
     }
 }
 
@@ -236,7 +235,7 @@ static void select_jog(void) {
     const int joint = *pins->jog_joint;
     const bool is_one = joint >= 0 && joint < joints && state.has_begun &&
                         state.option[AXG_WIRE_JOG_SPEED + joint] > 0;
-    const bool is_jog = *pins->jog && is_one && state.tool_step == TOOL_NONE;
+    const bool is_jog = *pins->jog && is_one && state.tool.step == AXG_TOOL_NONE;
     const bool is_other =
         is_jog && (joint != state.jog_joint || *pins->jog_down != state.jogs_down);
     if (is_jog == state.is_jog && !is_other) {
@@ -250,30 +249,20 @@ static void select_jog(void) {
     }
 }
 
+// The key leads out of a stop that forbids the change, and of an E-stop in that stop: LinuxCNC is
+// switched on for its tool change, and a command that moves a joint opens the chain again.
 static void change_tool(bool may_move) {
+    const bool rests = state.has_begun && state.still >= STILL_PERIODS && !state.is_ramping;
+    if (axg_tool_turn_key(&state.tool, &state.board, *pins->change_unguarded, rests)) {
+        state.is_latched = false;
+    }
     if (state.is_jog) {
         return;
     }
-    if (!*pins->tool_change) {
-        if (state.tool_step != TOOL_NONE) {
-            axg_board_end_tool(&state.board);
-        }
-        state.tool_step = TOOL_NONE;
-    } else if (state.tool_step == TOOL_NONE && axg_board_announce_tool(&state.board)) {
-        state.tool_step = TOOL_WANTED;
-    } else if (state.tool_step == TOOL_WANTED &&
-               axg_board_may_change_tool(&state.board, now_us())) {
-        state.tool_step = TOOL_OUT;
-    } else if (state.tool_step == TOOL_OUT && *pins->tool_changed_in) {
-        axg_board_end_tool(&state.board);
-        state.tool = (uint16_t)*pins->tool_number;
-        axg_board_change(&state.board, false, now_us());
-        state.tool_step = TOOL_PERMIT;
-    } else if (state.tool_step == TOOL_PERMIT && may_move) {
-        state.tool_step = TOOL_DONE;  // the program goes on only when its first motion is permitted
-    }
-    *pins->tool_change_out = state.tool_step == TOOL_OUT;
-    *pins->tool_changed = state.tool_step == TOOL_DONE;
+    const axg_tool_pins change = {*pins->tool_change, *pins->tool_changed_in, *pins->tool_number};
+    axg_tool_advance(&state.tool, &state.board, &change, may_move, now_us());
+    *pins->tool_change_out = axg_tool_is_out(&state.tool);
+    *pins->tool_changed = state.tool.step == AXG_TOOL_DONE;
 }
 
 // --- Motion -----------------------------------------------------------------------------------
@@ -405,10 +394,10 @@ static void send_sample(void) {
     says.mode = state.is_jog ? 3 : (state.still < STILL_PERIODS ? 1 : 0);
     says.jogs_down = state.jogs_down;
     says.jog_axis = (uint8_t)state.jog_joint;
-    if (state.tool_step == TOOL_WANTED || state.tool_step == TOOL_OUT) {
+    if (axg_tool_is_announced(&state.tool)) {
         says.mode = 2;
     }
-    says.tool = state.tool;
+    says.tool = state.tool.number;
     says.is_homed = is_homed();
     says.is_spindle_on = *pins->spindle_on;
     const uint8_t flags = axg_board_flags(&state.board, &says);
@@ -494,7 +483,8 @@ static void update(void* unused, long period_ns) {
     axg_board_motion motion = axg_board_may_move(&state.board, now_us());
     change_tool(motion.may_move);
     const bool is_aligned = read_commands(wanted);
-    const bool is_homing = *pins->home_unguarded && !is_homed();
+    const bool is_homing =
+        *pins->home_unguarded && !is_homed() && !axg_tool_is_unguarded(&state.tool);
     move((motion.may_move || is_homing) && !state.is_latched, wanted, is_aligned,
          (double)period_ns * 1e-9);
     if (!is_homing) {
@@ -541,6 +531,7 @@ static int make_pins(void) {
     NEW_PIN(bit, HAL_OUT, &pins->tool_change_out, "axguard-stop.tool-change-out");
     NEW_PIN(bit, HAL_IN, &pins->tool_changed_in, "axguard-stop.tool-changed-in");
     NEW_PIN(s32, HAL_IN, &pins->tool_number, "axguard-stop.tool-number");
+    NEW_PIN(bit, HAL_IN, &pins->change_unguarded, "axguard-stop.change-unguarded");
     NEW_PIN(bit, HAL_IN, &pins->jog, "axguard-stop.jog");
     NEW_PIN(s32, HAL_IN, &pins->jog_joint, "axguard-stop.jog-joint");
     NEW_PIN(bit, HAL_IN, &pins->jog_down, "axguard-stop.jog-down");
@@ -570,6 +561,7 @@ int rtapi_app_main(void) {
     }
     memset(&state, 0, sizeof state);
     state.still = STILL_PERIODS;
+    state.tool.key_before = true;
     pins = hal_malloc(sizeof *pins);
     int fault = pins == NULL ? -1 : make_pins();
     if (fault == 0) {

@@ -12,8 +12,8 @@
 #include "core/collision/engine.hpp"
 #include "core/guard/distance_need.hpp"
 #include "core/guard/monitor.hpp"
-#include "firmware_if/cli/why_sentences.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
+#include "firmware_if/setup/why_sentences.hpp"
 #include "hil_replay/trace/limit_survey.hpp"
 
 namespace axg {

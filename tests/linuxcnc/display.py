@@ -139,6 +139,51 @@ def jog_out():
         RESULT["after"] = run_program("after.ngc")
 
 
+def turn_key(value):
+    set_pin("axguard-stop.change-unguarded", value)
+    time.sleep(0.1)
+
+
+def change_to_known_tool():
+    """After an aborted change LinuxCNC believes that the tool before is in the spindle."""
+    COMMAND.mode(linuxcnc.MODE_MDI)
+    COMMAND.wait_complete()
+    COMMAND.mdi("M61 Q3")
+    COMMAND.wait_complete()
+    COMMAND.mdi("T1 M6")
+    return until(lambda: pin("axguard-stop.tool") == "1", 2)
+
+
+def change_by_key():
+    """A person leads out of a stop with an unknown tool. Without the key the change waits; with it
+    no joint moves, and a jog opens the E-stop chain; then another tool is loaded, and a program
+    runs."""
+    RESULT["key"] = said = {"armed_before": arm()}
+    COMMAND.abort()
+    said["changed_without_key"] = change_to_known_tool()
+    said["waits"] = pin("axguard-stop.tool-change")
+    COMMAND.abort()
+    COMMAND.mode(linuxcnc.MODE_MANUAL)
+    COMMAND.wait_complete()
+    turn_key(1)
+    before = pin("axguard-stop.2.position")
+    COMMAND.teleop_enable(0)
+    COMMAND.wait_complete()
+    COMMAND.jog(linuxcnc.JOG_INCREMENT, True, 2, 5, 5)
+    said["jog_opens_chain"] = until(lambda: STAT.task_state != linuxcnc.STATE_ON, 3)
+    said["moved"] = pin("axguard-stop.2.position") != before
+    said["chain_with_key_before"] = pin("axguard-stop.estop-ok")
+    turn_key(0)
+    turn_key(1)
+    said["on_again"] = switch_on()
+    said["changed"] = change_to_known_tool()
+    said["armed_with_key"] = arm()
+    turn_key(0)
+    said["armed"] = arm()
+    until(lambda: STAT.interp_state == linuxcnc.INTERP_IDLE, 3)
+    RESULT["after"] = run_program("after.ngc")
+
+
 def is_due(event, began):
     """After so many seconds, or when a pin has fallen below a value."""
     if "pin" in event:
@@ -186,6 +231,8 @@ def main():
             RESULT["ended"] = run_program("program.ngc")
         if RESULT["ended"] == "stopped" and "jogs" in SCENARIO:
             jog_out()
+        if RESULT["ended"] == "limit" and "key" in SCENARIO:
+            change_by_key()
         time.sleep(0.3)
         poll()
         if SCENARIO["guarded"]:

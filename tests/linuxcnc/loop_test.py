@@ -90,7 +90,8 @@ def scenarios(source):
         "tool": (TOOLS, False, {}),
         "tool_collide": (TOOLS.replace("Z40\nT1 M6", "Z40"), True, {}),
         "tool_in_motion": (SWING, True, {"events": [{"do": "tool_change", "after_s": 1.5}]}),
-        "tool_unknown": (TOOLS.replace("T2 M6", "T3 M6"), False, {"limit_s": 5}),
+        "tool_unknown": (TOOLS.replace("T2 M6", "T3 M6"), False,
+                         {"limit_s": 5, "key": True, "after": AFTER}),
         "xyzac_clean": (TIP_CLEAN, False, {}),
         "xyzac_collide": (TIP_COLLIDE, True, {}),
         "xyzbc_clean": (TIP_CLEAN.replace("A", "B"), False, {}),
@@ -169,6 +170,23 @@ def check_jogs(said):
         faults.append(f"jog: not where it was to end: {jogs[-1]}")
     if said.get("after") != "done":
         faults.append(f"jog: the program afterwards: {said.get('after')}, expected done")
+    return faults
+
+
+KEY = {"armed_before": False, "changed_without_key": False, "waits": "TRUE",
+       "jog_opens_chain": True, "moved": False, "chain_with_key_before": "FALSE", "on_again": True,
+       "changed": True, "armed_with_key": False, "armed": True}
+UNKNOWN = "tool 3 is not in paper-trunnion.yaml: add it under tools; load another tool to go on"
+
+
+def check_key(said, output):
+    """A person leads out of an unknown tool, and nothing else does."""
+    faults = [f"tool_unknown: {key}: found {said.get('key', {}).get(key)}, expected {wanted}"
+              for key, wanted in KEY.items() if said.get("key", {}).get(key) != wanted]
+    if said.get("after") != "done":
+        faults.append(f"tool_unknown: the program afterwards: {said.get('after')}, expected done")
+    if UNKNOWN not in output:
+        faults.append("tool_unknown: the terminal does not name the tool and the way out")
     return faults
 
 
@@ -256,10 +274,12 @@ def run_all(given):
                              given.build / "axguard")
         facts = stop_facts(rows, STOPPING[machine])
         mine = check(name, is_stopped, said, rows, overruns, judged, facts)
+        mine += check_key(said, output) if name == "tool_unknown" else []
         facts_of[name] = {"samples": len(rows), "overruns": overruns, "ended": said.get("ended"),
                           "contacts": sum(stop["reason"] != "tool" for stop in judged["stops"]),
                           "stops": facts, "resumed": said.get("resumed", 0),
                           "tools": sorted({row[10] for row in rows}), "jogs": said.get("jogs"),
+                          "key": said.get("key"),
                           "after": said.get("after"),
                           "pins": said.get("pins"), "errors": said.get("errors")}
         print(json.dumps({name: facts_of[name]}))

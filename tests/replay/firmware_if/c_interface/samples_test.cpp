@@ -183,6 +183,55 @@ TEST(CInterfaceSamples, TheStateSaysWhatWasProven) {
     EXPECT_EQ(proof.clearance_mm, -1);
 }
 
+// An unknown tool stops, and is no dead end: the words name it, the file and the way out, and the
+// reset is accepted with a tool that the file has. Words of an earlier fault are gone by then.
+TEST(CInterfaceSamples, AnUnknownToolIsExplainedAndLeftByAnother) {
+    const Machine machine = test::load_paper_machine().machine;
+    axg_sample sample = samples_of(machine, demo_frames()).front();
+    test::CHost host(test::c_options(AXG_MODE_STOPPABLE));
+    ASSERT_EQ(axg_guard_start(host.guard, sample.latched_us), AXG_STATUS_OK);
+    host.state.next_due_us = sample.latched_us;
+    host.arms = false;
+    const auto stand = [&](std::uint16_t tool, std::uint8_t flags, int samples) {
+        sample.tool = tool;
+        sample.flags = flags;
+        for (int i = 0; i < samples; ++i) {
+            sample.latched_us += 1000;
+            ++sample.number;
+            play_sample(host, sample);
+        }
+    };
+    std::array<char, 400> text{};
+    const auto words = [&] {
+        axg_guard_explain(host.guard, &host.state, text.data(), text.size());
+        return std::string(text.data());
+    };
+    const auto reset = [&] {
+        EXPECT_EQ(axg_guard_notify(host.guard, AXG_EVENT_RESET, host.now), AXG_STATUS_OK);
+        host.cycle(host.now);
+        return std::string(host.state.refused);
+    };
+    stand(1, 1, 200);  // not homed
+    ASSERT_EQ(host.state.phase, AXG_PHASE_STOPPED);
+    EXPECT_EQ(words().rfind("stopped: input: not_homed (", 0), 0U) << words();
+    stand(1, 0, 300);
+    ASSERT_EQ(reset(), "");
+    stand(1, 0, 300);
+    ASSERT_EQ(host.state.phase, AXG_PHASE_READY);
+    EXPECT_EQ(words(), "");
+    EXPECT_STREQ(host.state.input_fault, "");
+    stand(99, 0, 300);
+    ASSERT_EQ(host.state.phase, AXG_PHASE_STOPPED);
+    EXPECT_EQ(words(),
+              "stopped: verdict: tool\ntool 99 is not in paper-trunnion.yaml: add it under tools; "
+              "load another tool to go on");
+    EXPECT_EQ(reset(), "reset: a fault is still present");
+    stand(1, 0, 300);
+    EXPECT_EQ(words(), "stopped: verdict: tool");
+    EXPECT_EQ(reset(), "");
+    EXPECT_NE(host.state.phase, AXG_PHASE_STOPPED);
+}
+
 // A number that is left out is a sample that was lost, wherever it was lost.
 TEST(CInterfaceSamples, ANumberLeftOutIsASampleLost) {
     const Machine machine = test::load_paper_machine().machine;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware_if/cli/why_sentences.hpp"
+#include "firmware_if/setup/why_sentences.hpp"
 
 #include <fmt/format.h>
 
@@ -27,6 +27,18 @@ std::string cause_sentence(const WhyFacts& facts) {
             break;
     }
     return pair + " could not be proven clear";
+}
+
+/// In the words of the status: verdict: predicted: cutter - c.
+std::string stop_sentence(const StopAccount& account) {
+    std::string out = fmt::format("stopped: {}", to_text(account.cause));
+    if (account.cause == GuardFault::verdict) {
+        out += fmt::format(": {}", to_text(account.reason));
+    }
+    if (!account.a.empty()) {
+        out += fmt::format(": {} - {}", account.a, account.b);
+    }
+    return account.detail.empty() ? out : out + ": " + account.detail;
 }
 
 }  // namespace
@@ -66,6 +78,16 @@ std::vector<std::string> why_sentences(const WhyFacts& facts) {
                   (facts.is_of_stop
                        ? fmt::format(", the proof of a stop needs up to {:.4f} mm", facts.needed_mm)
                        : fmt::format(", their margin is {:g} mm", facts.margin_mm)));
+    return out;
+}
+
+std::vector<std::string> stop_sentences(const StopAccount& account) {
+    std::vector<std::string> out{stop_sentence(account)};
+    if (account.unknown_tool) {
+        out.push_back(
+            fmt::format("tool {} is not in {}: add it under tools; load another tool to go on",
+                        *account.unknown_tool, account.file));
+    }
     return out;
 }
 

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Why a pair was not proven, as plain sentences. One wording for reports, pages and the status of a
-// running guard; lists and parts of a distance are details that each of them adds.
+// Why a pair was not proven, and why a guard is stopped, as plain sentences. One wording for
+// reports, pages, logs and the status of a running guard; lists and parts of a distance are details
+// that each of them adds.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "core/guard/guard_state.hpp"
 
 namespace axg {
 
@@ -32,5 +36,18 @@ struct WhyFacts {
 
 /// One or two sentences: the missing proof; then the distance, if the cause is about one.
 [[nodiscard]] std::vector<std::string> why_sentences(const WhyFacts& facts);
+
+/// A stop in force, as its reader sees it.
+struct StopAccount {
+    GuardFault cause = GuardFault::none;
+    StopReason reason = StopReason::none;
+    std::string a, b;    // verdict about a pair: the bodies
+    std::string detail;  // input, output: the fault that stopped; empty: not known
+    std::string file;    // the machine file
+    std::optional<std::uint16_t> unknown_tool;  // now in the spindle, and not in `file`
+};
+
+/// The cause first; then what leads out, if it differs from that of every stop. Never empty.
+[[nodiscard]] std::vector<std::string> stop_sentences(const StopAccount& account);
 
 }  // namespace axg

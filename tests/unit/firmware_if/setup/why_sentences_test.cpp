@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a reader is told first of a pair that was not proven: each cause has a sentence of its own,
 // none names a list of the engine, and the distance follows where the stop is about one.
-#include "firmware_if/cli/why_sentences.hpp"
+#include "firmware_if/setup/why_sentences.hpp"
 
 #include <gtest/gtest.h>
 
@@ -57,6 +57,36 @@ TEST(WhySentences, NothingIsClaimedOfADistanceThatIsNotProven) {
     facts.available_mm = 0;
     EXPECT_EQ(why_sentences(facts)[1],
               "no distance between them is proven, the proof of a stop needs up to 33.6862 mm");
+}
+
+TEST(StopSentences, AnUnknownToolNamesTheFileAndWhatLeadsOut) {
+    StopAccount account;
+    account.cause = GuardFault::verdict;
+    account.reason = StopReason::tool;
+    account.file = "mill.yaml";
+    account.unknown_tool = 3;
+    EXPECT_EQ(stop_sentences(account),
+              (std::vector<std::string>{"stopped: verdict: tool",
+                                        "tool 3 is not in mill.yaml: add it under tools; load "
+                                        "another tool to go on"}));
+    account.unknown_tool.reset();
+    EXPECT_EQ(stop_sentences(account).size(), 1U) << "a known tool was loaded since";
+}
+
+TEST(StopSentences, OnlyWhatBelongsToTheCauseIsNamed) {
+    StopAccount account;
+    account.cause = GuardFault::verdict;
+    account.reason = StopReason::predicted;
+    account.a = "cutter";
+    account.b = "c";
+    EXPECT_EQ(stop_sentences(account)[0], "stopped: verdict: predicted: cutter - c");
+    account = {};
+    account.cause = GuardFault::input;
+    account.detail = "stale (no frame in time)";
+    EXPECT_EQ(stop_sentences(account)[0], "stopped: input: stale (no frame in time)");
+    account = {};
+    account.cause = GuardFault::silence;
+    EXPECT_EQ(stop_sentences(account)[0], "stopped: silence");
 }
 
 }  // namespace
