@@ -208,7 +208,8 @@ AXG_API axg_status axg_guard_receive(axg_guard* guard, const axg_frame* frame);
 // receiver rules apply, and positions are rounded to the counts of the format. Call it in the order
 // of the samples; its frames count against the capacity.
 // @param now_us  time of arrival
-// @return  AXG_STATUS_BAD_CALL: another format or number of axes, or a position that does not fit
+// @return  AXG_STATUS_BAD_CALL: another format or number of axes, or a position or tool number
+//          that does not fit
 AXG_API axg_status axg_guard_put_sample(axg_guard* guard, const axg_sample* sample, int64_t now_us);
 
 // Writes the frames that axg_guard_put_sample would queue: for a board that sends its samples to a

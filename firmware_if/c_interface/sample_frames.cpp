@@ -12,6 +12,7 @@ namespace {
 constexpr double kRadPerDeg = 0x1.1df46a2529d39p-6;
 constexpr std::uint32_t kNonceMax = 0xFFFFFF;
 constexpr std::uint8_t kSessionCounters = 16;
+constexpr std::uint16_t kClassicalToolMax = 255;  // the frames have its low byte alone
 
 std::uint16_t lap_of(std::uint64_t number) noexcept {
     return static_cast<std::uint16_t>(number / kSyncCounterMax);
@@ -24,7 +25,9 @@ bool takes_samples(const Machine& machine) noexcept {
 }
 
 SampleFrames::SampleFrames(const Machine& machine) noexcept
-    : encoder_(machine, {.says_session = false}), takes_samples_(axg::takes_samples(machine)) {}
+    : encoder_(machine, {.says_session = false}),
+      takes_samples_(axg::takes_samples(machine)),
+      tool_max_(machine.can.format == CanFormat::classical ? kClassicalToolMax : UINT16_MAX) {}
 
 /// As a board has to: at once, every 100 ms, and with each lap and nonce.
 void SampleFrames::put_session(const axg_sample& sample, std::uint32_t& count) noexcept {
@@ -52,7 +55,8 @@ std::span<const CanFrame> SampleFrames::encode(const axg_sample& sample,
                                                std::int64_t now_us) noexcept {
     const AxisFrameSet& set = encoder_.frame_set();
     const bool is_sound = takes_samples_ && sample.axis_count == set.axis_count &&
-                          sample.nonce <= kNonceMax && sample.latched_us <= now_us &&
+                          sample.nonce <= kNonceMax && sample.tool <= tool_max_ &&
+                          sample.latched_us <= now_us &&
                           std::all_of(std::begin(sample.reserved), std::end(sample.reserved),
                                       [](std::uint8_t byte) { return byte == 0; });
     if (!is_sound) {

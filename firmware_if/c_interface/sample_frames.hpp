@@ -29,6 +29,7 @@ class SampleFrames {
 
     AxisEncoder encoder_;
     bool takes_samples_;
+    std::uint16_t tool_max_;  // that the frames can carry
     std::array<CanFrame, kFramesPerSnapshotMax> frames_{};
     bool has_session_ = false;
     std::uint32_t nonce_ = 0;  // of the last session frame, as the two below

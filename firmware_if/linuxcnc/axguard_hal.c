@@ -48,7 +48,8 @@ typedef struct host {
     int64_t arm_until_us;   // 0: nobody arms
     const char* interface;  // of the bus to the guard; null: it is in this process
     axg_bus bus;
-    bool is_lost;  // a frame of ours could not be sent
+    bool is_lost;     // a frame of ours could not be sent
+    bool is_refused;  // the last sample was none of this machine
 } host;
 
 static volatile sig_atomic_t ends;
@@ -296,9 +297,17 @@ static void take_sample(host* host, const union hal_stream_data record[]) {
     }
     host->sample_us = sample.latched_us;
     host->arrived_ns = host_ns();
-    if (!give(host, &sample) && host->interface == NULL) {
+    const bool is_refused = !give(host, &sample);
+    if (is_refused && host->interface == NULL) {
         axg_guard_notify(host->guard, AXG_EVENT_FRAMES_LOST, host->now_us);
     }
+    if (is_refused && !host->is_refused) {
+        fprintf(stderr,
+                "axguard-hal: a sample does not fit can.format: tool %u (classical: at most 255), "
+                "or a position. Load another tool, or state can.format: fd.\n",
+                (unsigned)sample.tool);
+    }
+    host->is_refused = is_refused;
     take_hash(host, record);
     if (host->has_arms && record[4].u != host->arms) {
         axg_bus_press(&host->bus, host_ns() / 1000);

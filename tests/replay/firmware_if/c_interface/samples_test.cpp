@@ -263,6 +263,7 @@ TEST(CInterfaceSamples, WhatIsNoSampleOfTheMachineIsRefused) {
     EXPECT_TRUE(refused([](axg_sample& sample) { sample.nonce = 1U << 24; }));
     EXPECT_TRUE(refused([](axg_sample& sample) { sample.reserved[0] = 1; }));
     EXPECT_TRUE(refused([](axg_sample& sample) { sample.position[0] = 1e9; }));
+    EXPECT_TRUE(refused([](axg_sample& sample) { sample.tool = 257; })) << "no tool 1";
     EXPECT_TRUE(refused([](axg_sample& sample) { sample.position[1] = NAN; }));
     EXPECT_EQ(axg_guard_put_sample(host.guard, &good, now_us), AXG_STATUS_OK);
 }
