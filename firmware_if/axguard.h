@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // C interface of the guard, for use in another process: frames in, frames out, time in. The calling
 // process provides threads, clock and socket. Lengths in mm, times in us of one monotonic clock. No
-// exception crosses this interface. Only axg_guard_destroy touches the heap after axg_guard_start.
-// Example: c_interface/example/guard_a_trace.c. Reference:
+// exception crosses this interface. Only axg_guard_destroy and axg_guard_explain touch the heap
+// after axg_guard_start. Example: c_interface/example/guard_a_trace.c. Reference:
 // docs/reference/c-interface.md.
 #ifndef AXG_AXGUARD_H
 #define AXG_AXGUARD_H
@@ -28,6 +28,7 @@ extern "C" {
 #define AXG_HASH_PARTS 4U
 #define AXG_SAMPLE_FRAMES_MAX 40U  // of axg_guard_encode_sample
 #define AXG_NO_PAIR UINT32_MAX
+#define AXG_STOP_TEXT_BYTES 1024U
 
 typedef enum axg_status {
     AXG_STATUS_OK = 0,
@@ -154,12 +155,23 @@ typedef struct axg_state {
     const char* bus_fault;    // text of the last bus fault; or ""
     int64_t next_due_us;      // call axg_guard_process at this time, or when a frame arrives
     uint8_t has_query;        // 1: call axg_guard_evaluate
+    uint8_t is_confirmed;     // 1: stopped, and the axes are at rest since
     uint64_t snapshots;       // complete samples
     uint64_t permits, stops;  // sent
     uint64_t late;            // results after the deadline of the machine file
     uint64_t samples_lost;
     axg_proof proof;  // since version 3
 } axg_state;
+
+// The stop in force, for a person.
+typedef struct axg_stop {
+    uint32_t pair;        // that stopped; or AXG_NO_PAIR
+    uint32_t line_count;  // of text
+    // Proven lower bound of the distance of `pair` when it stopped, and the distance that its proof
+    // needed, mm; -1: unknown.
+    double clearance_mm, needed_mm;
+    char text[AXG_STOP_TEXT_BYTES];  // cause, distances, and what leads out, in lines
+} axg_stop;
 
 // An axis as the machine file states it, in mm or degrees.
 typedef struct axg_axis {
@@ -197,7 +209,7 @@ typedef struct axg_guard axg_guard;
 AXG_API axg_status axg_guard_create(const axg_options* options, axg_guard** out, char* text,
                                     size_t text_bytes);
 
-// Call once. The guard allocates no memory afterwards.
+// Call once. The guard allocates no memory afterwards, but in axg_guard_explain.
 AXG_API axg_status axg_guard_start(axg_guard* guard, int64_t now_us);
 
 // Queues a frame of the bus, in order of arrival, including the guard's own with AXG_FRAME_OWN, for
@@ -241,10 +253,11 @@ AXG_API axg_status axg_guard_notify(axg_guard* guard, int32_t event, int64_t now
 // Returns "cutter - c", valid until axg_guard_destroy; "" for AXG_NO_PAIR and invalid pairs.
 AXG_API const char* axg_guard_pair_name(const axg_guard* guard, uint32_t pair);
 
-// Writes why the guard is stopped, and what leads out, in lines; "" in every other phase.
-// @param state  of the last axg_guard_process
-AXG_API void axg_guard_explain(const axg_guard* guard, const axg_state* state, char* text,
-                               size_t text_bytes);
+// Explains the stop in force; in every other phase there are no lines. Once the axes are at rest
+// (is_confirmed) its last line may be a proven jog. Allocates, and may take milliseconds: at the
+// stop, and at rest; call it then only.
+// @param program_line  of the control, at the stop; 0: not known
+AXG_API axg_status axg_guard_explain(axg_guard* guard, int32_t program_line, axg_stop* out);
 
 // Returns what the machine file states for a board; also before the start.
 AXG_API axg_status axg_guard_terms(const axg_guard* guard, axg_terms* out);

@@ -12,7 +12,7 @@
 #include "config/text/quote_text.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/guard_exit.hpp"
-#include "firmware_if/setup/why_sentences.hpp"
+#include "firmware_if/explain/why_sentences.hpp"
 
 namespace axg {
 namespace {

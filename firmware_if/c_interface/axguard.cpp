@@ -18,6 +18,8 @@
 #include "config/machine/effective_text.hpp"
 #include "firmware_if/c_interface/board_terms.hpp"
 #include "firmware_if/c_interface/sample_frames.hpp"
+#include "firmware_if/explain/stop_desk.hpp"
+#include "firmware_if/explain/why_sentences.hpp"
 #include "firmware_if/guard/guard_node.hpp"
 #include "firmware_if/guard/host_wire.hpp"
 #include "firmware_if/guard/live_engine.hpp"
@@ -26,7 +28,6 @@
 #include "firmware_if/setup/guard_engine.hpp"
 #include "firmware_if/setup/guard_parts.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
-#include "firmware_if/setup/why_sentences.hpp"
 
 static_assert(AXG_SAMPLE_FRAMES_MAX >= axg::kFramesPerSnapshotMax);
 static_assert(sizeof(axg_latch) == sizeof(axg::LatchCell) &&
@@ -40,12 +41,12 @@ struct axg_guard {
     [[nodiscard]] bool has_all() const noexcept { return parts.fault().empty(); }
 
     axg::LoadedMachine loaded;
-    std::string file;                // the machine file, without its folder
     std::vector<std::string> pairs;  // names
     axg::GuardParts parts;
     std::string words;  // the fault, if a part is missing
     std::optional<axg::ChosenEngine> chosen;
     std::optional<axg::GuardChain> chain;
+    std::optional<axg::StopDesk> desk;
     axg::LatchCell forgotten{};  // in the place of a latch that outlives the guard
     axg::LatchCell* latch = &forgotten;
     axg::LiveOptions options;
@@ -55,7 +56,6 @@ struct axg_guard {
     const char* refused = "";
     const char* bus_fault = "";
     std::atomic<bool> has_query{false};
-    std::atomic<std::int32_t> unknown_tool{-1};  // of the newest sample; -1: its tool is known
     axg::SampleFrames samples;
     std::uint32_t version;  // of the header that the host was compiled with
     axg::LiveResult last;   // the newest of a sample
@@ -256,6 +256,8 @@ axg_state state_of(const axg_guard& guard) noexcept {
     state.bus_fault = guard.bus_fault;
     state.next_due_us = live.next_due_us();
     state.has_query = guard.has_query.load() ? 1 : 0;
+    state.is_confirmed =
+        live.guard().phase == GuardPhase::stopped && live.guard().is_confirmed ? 1 : 0;
     state.snapshots = live.counters().snapshots;
     state.permits = live.counters().permits;
     state.stops = live.counters().stops;
@@ -265,40 +267,37 @@ axg_state state_of(const axg_guard& guard) noexcept {
     return state;
 }
 
-/// The guard's own enum values: `state` has their names.
-axg::StopAccount account_of(const axg_guard& guard, const axg_state& state) {
-    const axg::GuardNode& live = *guard.guard;
-    axg::StopAccount out{.cause = live.guard().cause,
-                         .reason = live.reason(),
-                         .a = {},
-                         .b = {},
-                         .detail = {},
-                         .file = guard.file,
-                         .unknown_tool = {}};
-    if (out.cause == axg::GuardFault::verdict && state.pair < guard.loaded.machine.pairs.size()) {
-        const axg::Pair& pair = guard.loaded.machine.pairs[state.pair];
-        out.a = guard.loaded.machine.bodies[pair.a].name;
-        out.b = guard.loaded.machine.bodies[pair.b].name;
+/// Returns the fault of the input or the bus that stopped.
+std::string detail_of(const axg_guard& guard, axg::GuardFault cause) {
+    if (cause == axg::GuardFault::input && guard.input_fault != axg::ReceiverFault::none) {
+        const axg::FaultRow& row = axg::fault_row(guard.input_fault);
+        return std::string(row.name) + " (" + row.meaning + ")";
     }
-    if (out.cause == axg::GuardFault::input) {
-        out.detail = guard.input_fault == axg::ReceiverFault::none
-                         ? guard.bus_fault
-                         : std::string(state.input_fault) + " (" +
-                               axg::fault_row(guard.input_fault).meaning + ")";
-    } else if (out.cause == axg::GuardFault::output) {
-        out.detail = state.bus_fault;
+    const bool is_bus = cause == axg::GuardFault::input || cause == axg::GuardFault::output;
+    return is_bus ? guard.bus_fault : "";
+}
+
+void explain(axg_guard& guard, std::int32_t program_line, axg_stop& out) {
+    axg::StopView view = guard.desk->view(*guard.guard);
+    view.account.program_line = program_line;
+    view.account.detail = detail_of(guard, view.account.cause);
+    std::string words;
+    for (const std::string& sentence : axg::stop_sentences(view.account)) {
+        words += (words.empty() ? "" : "\n") + sentence;
+        ++out.line_count;
     }
-    if (const std::int32_t tool = guard.unknown_tool.load(); tool >= 0) {
-        out.unknown_tool = static_cast<std::uint16_t>(tool);
+    put_text(words, out.text, sizeof out.text);
+    out.pair = view.account.a.empty() ? AXG_NO_PAIR : guard.guard->pair();
+    if (view.why) {
+        out.clearance_mm = std::max(0.0, view.why->distances.available_mm);
+        out.needed_mm = view.why->distances.need.sum_mm();
     }
-    return out;
 }
 
 }  // namespace
 
 axg_guard::axg_guard(axg::LoadedMachine&& machine, const axg_options& wanted)
     : loaded(std::move(machine)),
-      file(std::filesystem::path(wanted.machine_file).filename()),
       parts(loaded, wanted.mode == AXG_MODE_STOPPABLE),
       samples(loaded.machine),
       version(wanted.version) {
@@ -318,6 +317,8 @@ axg_guard::axg_guard(axg::LoadedMachine&& machine, const axg_options& wanted)
     chain.emplace(loaded.machine, chosen->engine(*parts.engine), *parts.containment_test,
                   parts.cycle.stop_certificate(), parts.cycle.speed_advisory(),
                   parts.cycle.margin_advisory());
+    desk.emplace(loaded, *parts.engine, *parts.containment_test,
+                 std::filesystem::path(wanted.machine_file).filename().string());
     options.accepts_local = wanted.takes_local != 0;
     options.hashes = axg::configuration_hashes(loaded.machine, loaded.meshes);
     axg::set_latch(forgotten, false);
@@ -433,6 +434,7 @@ axg_status axg_guard_process(axg_guard* guard, int64_t now_us, axg_state* out) {
         [[maybe_unused]] const bool is_pushed = guard->queues.results.push(live_result);
     }
     guard->guard->turn(now_us);
+    guard->desk->set_stop(*guard->guard);
     if (guard->guard->has_submitted()) {
         guard->has_query.store(true);
     }
@@ -449,14 +451,9 @@ axg_status axg_guard_evaluate(axg_guard* guard) {
     guard->has_query.store(false);
     const axg::LiveEngine live{.machine = guard->loaded.machine, .chain = *guard->chain};
     axg::run_queries(live, guard->queues, [guard](const axg::LiveResult& live_result) {
-        if (live_result.kind == axg::LiveQuery::Kind::snapshot) {
-            const axg::CycleResult& result = live_result.result;
-            guard->unknown_tool.store(result.reason == axg::StopReason::tool
-                                          ? guard->chain->refused(result).snapshot.tool
-                                          : -1);
-        }
         // Full only if no thread processes; then no thread needs it.
         [[maybe_unused]] const bool is_kept = guard->undated.push(live_result);
+        guard->desk->note(live_result, *guard->chain);
     });
     return AXG_STATUS_OK;
 }
@@ -506,21 +503,19 @@ const char* axg_guard_pair_name(const axg_guard* guard, uint32_t pair) {
     return guard == nullptr || pair >= guard->pairs.size() ? "" : guard->pairs[pair].c_str();
 }
 
-void axg_guard_explain(const axg_guard* guard, const axg_state* state, char* text,
-                       size_t text_bytes) {
-    put_text("", text, text_bytes);
-    if (guard == nullptr || !guard->guard || state == nullptr ||
-        state->phase != AXG_PHASE_STOPPED) {
-        return;
+axg_status axg_guard_explain(axg_guard* guard, int32_t program_line, axg_stop* out) {
+    if (guard == nullptr || !guard->guard || out == nullptr) {
+        return AXG_STATUS_BAD_CALL;
+    }
+    *out = {.pair = AXG_NO_PAIR, .line_count = 0, .clearance_mm = -1, .needed_mm = -1, .text = {}};
+    if (guard->guard->guard().phase != GuardPhase::stopped) {
+        return AXG_STATUS_OK;
     }
     try {
-        std::string words;
-        for (const std::string& sentence : axg::stop_sentences(account_of(*guard, *state))) {
-            words += (words.empty() ? "" : "\n") + sentence;
-        }
-        put_text(words, text, text_bytes);
+        explain(*guard, program_line, *out);
+        return AXG_STATUS_OK;
     } catch (...) {
-        put_text("stopped: out of memory for its words", text, text_bytes);
+        return AXG_STATUS_NO_MEMORY;
     }
 }
 

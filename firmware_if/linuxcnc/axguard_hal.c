@@ -21,14 +21,19 @@
 #define IDLE_NS 50000   // between two looks at an empty stream
 #define ARM_US 5000000  // so long a person's arming waits for the guard to be ready
 #define TEXT_BYTES 8192
+#define SAMPLES_A_CYCLE 16  // after a delay: the guard's queue has room for their frames
 
 typedef struct hal_pins {
     hal_s32_t* phase;
     hal_u32_t *level, *samples, *cap, *pair;
     hal_u32_t *permits, *stops, *late, *samples_lost;
-    hal_float_t* clearance;
+    hal_float_t *clearance, *needed;
     hal_bit_t *armed, *proven;
+    hal_s32_t* program_line;
 } hal_pins;
+
+// How much of the stop in force was explained; rest may add a way out.
+typedef enum explained { EXPLAINED_NOTHING = 0, EXPLAINED_STOP, EXPLAINED_REST } explained;
 
 typedef struct host {
     int comp_id;
@@ -39,8 +44,13 @@ typedef struct host {
     axg_state state;
     axg_phase phase_said;
     bool has_said;
-    int64_t sample_us;   // the machine's time: of the newest sample
-    int64_t arrived_ns;  // the host's time when it came
+    explained explained;
+    axg_stop stop;  // in force
+    uint32_t lines_said;
+    int32_t program_line;  // of the stop
+    bool was_armed;        // before the stop
+    int64_t sample_us;     // the machine's time: of the newest sample
+    int64_t arrived_ns;    // the host's time when it came
     int64_t now_us;
     uint32_t arms;
     bool has_arms, wants_reset;
@@ -133,30 +143,69 @@ static const char* phase_name(axg_phase phase) {
     return names[phase];
 }
 
-// Prints why the guard is stopped, and what leads out: the first line behind `head`.
-static void print_why(host* host, const char* head) {
-    char text[TEXT_BYTES];
-    axg_guard_explain(host->guard, &host->state, text, sizeof text);
-    for (char *line = text, *rest = NULL; (line = strtok_r(line, "\n", &rest)); line = NULL) {
-        fprintf(stderr, "%s%s\n", head, line);
-        head = "  ";
+// To LinuxCNC's operator, by the realtime component: a display shows what motmod passes on.
+static void show_operator(host* host, const char* text) {
+    uint8_t data[AXG_WIRE_TEXT_BYTES] = {0};
+    memcpy(data, text, strnlen(text, sizeof data - 1));
+    for (uint32_t i = 0; i < AXG_WIRE_TEXT_BYTES / 8 && (i == 0 || data[8 * i - 1] != 0); ++i) {
+        send(host, AXG_WIRE_TEXT, i, 0, &data[8 * i], 0);
+    }
+    send(host, AXG_WIRE_SHOW, 0, 0, data, 0);
+}
+
+// Prints the lines of the stop that were not printed yet; `head` is before the first.
+static void print_stop(host* host, const char* head, bool is_for_operator) {
+    const char* line = host->stop.text;
+    for (uint32_t i = 0; i < host->lines_said; ++i) {
+        line += strcspn(line, "\n");
+        line += *line != '\0' ? 1 : 0;
+    }
+    if (is_for_operator && *line != '\0') {
+        show_operator(host, line);
+    }
+    for (; *line != '\0'; head = "  ") {
+        const size_t length = strcspn(line, "\n");
+        fprintf(stderr, "%s%.*s\n", head, (int)length, line);
+        line += length + (line[length] != '\0' ? 1 : 0);
+    }
+    host->lines_said = host->stop.line_count;
+}
+
+// Explains a stop when it comes, and once more at rest, where a way out may be known.
+static void explain(host* host, const char* head) {
+    const axg_state* const state = &host->state;
+    if (state->phase != AXG_PHASE_STOPPED || host->interface != NULL) {
+        host->explained = EXPLAINED_NOTHING;
+        host->lines_said = 0;
+        host->stop.pair = AXG_NO_PAIR;
+        host->was_armed = state->phase == AXG_PHASE_ARMED;
+        return;
+    }
+    const explained wanted = state->is_confirmed != 0 ? EXPLAINED_REST : EXPLAINED_STOP;
+    if (host->explained >= wanted) {
+        return;
+    }
+    if (host->explained == EXPLAINED_NOTHING) {
+        host->program_line = *host->pins->program_line;
+    }
+    host->explained = wanted;
+    if (axg_guard_explain(host->guard, host->program_line, &host->stop) == AXG_STATUS_OK) {
+        // A guard that was not armed stops at each start, before the joints are homed.
+        print_stop(host, head, host->was_armed || host->stop.line_count > 1);
     }
 }
 
 static void say(host* host) {
     const axg_state* const state = &host->state;
-    if (host->has_said && state->phase == host->phase_said) {
-        return;
-    }
-    host->has_said = true;
-    host->phase_said = state->phase;
     char head[64];
     snprintf(head, sizeof head, "axguard-hal: %" PRId64 " us: ", host->now_us);
-    if (state->phase == AXG_PHASE_STOPPED && host->interface == NULL) {
-        print_why(host, head);
-    } else {
+    const bool is_new = !host->has_said || state->phase != host->phase_said;
+    host->has_said = true;
+    host->phase_said = state->phase;
+    if (is_new && (state->phase != AXG_PHASE_STOPPED || host->interface != NULL)) {
         fprintf(stderr, "%s%s\n", head, phase_name(state->phase));
     }
+    explain(host, head);
 }
 
 static void show(host* host) {
@@ -168,13 +217,34 @@ static void show(host* host) {
     *pins->level = state->proof.level;
     *pins->samples = state->proof.samples;
     *pins->cap = state->proof.cap;
-    *pins->pair = state->proof.pair;
-    *pins->clearance = state->proof.clearance_mm;
     *pins->permits = (uint32_t)state->permits;
     *pins->stops = (uint32_t)state->stops;
     *pins->late = (uint32_t)state->late;
     *pins->samples_lost = (uint32_t)state->samples_lost;
     say(host);
+    const bool is_stop = host->stop.pair != AXG_NO_PAIR;  // of its pair, until the reset
+    *pins->pair = is_stop ? host->stop.pair : state->proof.pair;
+    *pins->clearance = is_stop ? host->stop.clearance_mm : state->proof.clearance_mm;
+    *pins->needed = is_stop ? host->stop.needed_mm : state->proof.needed_mm;
+}
+
+// A person's arming had no effect: why, and what leads out of a stop.
+static void refuse(host* host) {
+    char text[TEXT_BYTES];
+    const axg_state* const state = &host->state;
+    axg_guard_explain(host->guard, host->program_line, &host->stop);
+    if (state->refused[0] == '\0' && state->proof.is_proven == 0) {
+        const char* const pair = axg_guard_pair_name(host->guard, state->proof.pair);
+        snprintf(text, sizeof text,
+                 "not armed: no permit here: %s (%s%s%s); jog another way, or move by hand\n",
+                 state->proof.withheld, state->proof.reason, pair[0] != '\0' ? ": " : "", pair);
+    } else {
+        snprintf(text, sizeof text, "not armed: %s\n%s%s", state->refused, host->stop.text,
+                 host->stop.line_count != 0 ? "\n" : "");
+    }
+    show_operator(host, text);
+    fprintf(stderr, "axguard-hal: %s", text);
+    host->lines_said = host->stop.line_count;
 }
 
 // A person's one act resets a stop, where there is one, and arms when the guard is ready.
@@ -191,8 +261,7 @@ static void arm(host* host) {
     }
     if (host->state.phase == AXG_PHASE_ARMED || host->now_us >= host->arm_until_us) {
         if (host->state.phase != AXG_PHASE_ARMED) {
-            fprintf(stderr, "axguard-hal: not armed: %s\n", host->state.refused);
-            print_why(host, "  ");
+            refuse(host);
         }
         host->arm_until_us = 0;
     }
@@ -391,6 +460,7 @@ static int make_pins(host* host) {
     NEW_PIN(bit, &host->pins->armed, "armed");
     NEW_PIN(bit, &host->pins->proven, "proven");
     NEW_PIN(float, &host->pins->clearance, "clearance-mm");
+    NEW_PIN(float, &host->pins->needed, "needed-mm");
     NEW_PIN(u32, &host->pins->pair, "pair");
     NEW_PIN(u32, &host->pins->level, "level");
     NEW_PIN(u32, &host->pins->samples, "permit-samples");
@@ -399,7 +469,9 @@ static int make_pins(host* host) {
     NEW_PIN(u32, &host->pins->stops, "stops");
     NEW_PIN(u32, &host->pins->late, "late");
     NEW_PIN(u32, &host->pins->samples_lost, "samples-lost");
-    return fault;
+    return fault ? fault
+                 : hal_pin_s32_newf(HAL_IN, &host->pins->program_line, host->comp_id,
+                                    "axguard.program-line");
 }
 
 static int attach(host* host) {
@@ -428,8 +500,9 @@ static axg_status run(host* host) {
     const struct timespec idle = {0, IDLE_NS};
     while (!ends && status == AXG_STATUS_OK) {
         uint64_t newest = 0;
-        while (hal_stream_readable(&host->samples) &&
-               hal_stream_read(&host->samples, record, &unused) == 0) {
+        for (int i = 0; i < SAMPLES_A_CYCLE && hal_stream_readable(&host->samples) &&
+                        hal_stream_read(&host->samples, record, &unused) == 0;
+             ++i) {
             newest = number_of(record);
             if (has_started) {
                 take_sample(host, record);
@@ -465,7 +538,8 @@ int main(int count, char** words) {
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
     host.bus.socket = -1;
-    host.state.proof.clearance_mm = -1;  // a guard on the bus does not send it
+    host.state.proof.clearance_mm = host.state.proof.needed_mm = -1;  // no frame of the bus has it
+    host.stop.pair = AXG_NO_PAIR;
     if (!make_guard(&host, count, words)) {
         return 1;
     }

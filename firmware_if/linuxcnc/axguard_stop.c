@@ -15,6 +15,7 @@
 
 #include "firmware_if/board/axguard_board.h"
 #include "firmware_if/linuxcnc/axguard_period.h"
+#include "firmware_if/linuxcnc/axguard_pins.h"
 #include "firmware_if/linuxcnc/axguard_tool.h"
 #include "firmware_if/linuxcnc/axguard_wire.h"
 
@@ -32,23 +33,6 @@ RTAPI_MP_INT(joints, "number of joints, as the axes of the machine file");
 #define MESSAGES_A_PERIOD 64
 #define ARM_PERIODS 5000U  // so long a person's arming waits for rest and for the guard
 #define WAIT_STEP_NS 20000
-
-typedef struct stop_pins {
-    hal_float_t* in[AXG_WIRE_JOINTS_MAX];        // joint.N.motor-pos-cmd
-    hal_float_t* offset[AXG_WIRE_JOINTS_MAX];    // joint.N.motor-offset
-    hal_float_t* out[AXG_WIRE_JOINTS_MAX];       // to the drive
-    hal_float_t* position[AXG_WIRE_JOINTS_MAX];  // of the joint, as the guard gets it
-    hal_bit_t* homed[AXG_WIRE_JOINTS_MAX];
-    hal_bit_t* enable_in[AXG_WIRE_JOINTS_MAX];   // joint.N.amp-enable-out
-    hal_bit_t* enable_out[AXG_WIRE_JOINTS_MAX];  // stays on until the ramp has ended
-    hal_bit_t *arm, *permit_ok, *feed_inhibit, *estop_ok, *stopping, *spindle_on, *home_unguarded,
-        *change_unguarded;
-    hal_float_t* adaptive_feed;
-    hal_bit_t *tool_change, *tool_changed, *tool_change_out, *tool_changed_in, *jog, *jog_down;
-    hal_s32_t *tool_number, *jog_joint;
-    hal_u32_t *mode, *tool, *number, *cause, *refusal, *permits, *left, *simulation_wait_us,
-        *unheard, *last_stop, *late;
-} stop_pins;
 
 typedef struct stop_state {
     axg_board board;
@@ -75,6 +59,7 @@ typedef struct stop_state {
     uint32_t ramp_periods;
     int64_t clock_ns;  // of the host, when this period began
     axg_period period;
+    char text[AXG_WIRE_TEXT_BYTES + 1];  // for the operator
 } stop_state;
 
 static int comp_id;
@@ -168,6 +153,15 @@ static void take_message(const union hal_stream_data* message) {
             state.done = message[1].u | (uint64_t)message[2].u << 32;
             state.waits = true;
             state.guard_is_ready = index != 0;
+            break;
+        case AXG_WIRE_TEXT:
+            if (index < AXG_WIRE_TEXT_BYTES / 8) {
+                memcpy(&state.text[8 * index], &message[1].u, 4);
+                memcpy(&state.text[8 * index + 4], &message[2].u, 4);
+            }
+            break;
+        case AXG_WIRE_SHOW:  // motmod passes messages of this level on to LinuxCNC's operator
+            rtapi_print_msg(RTAPI_MSG_ERR, "axguard: %s\n", state.text);
             break;
         default:
             break;
@@ -504,51 +498,6 @@ static void update(void* unused, long period_ns) {
 
 // --- Loading ----------------------------------------------------------------------------------
 
-#define NEW_PIN(type, direction, where, ...) \
-    (fault = fault ? fault : hal_pin_##type##_newf(direction, where, comp_id, __VA_ARGS__))
-
-static int make_pins(void) {
-    int fault = 0;
-    for (int i = 0; i < joints; ++i) {
-        NEW_PIN(float, HAL_IN, &pins->in[i], "axguard-stop.%d.in", i);
-        NEW_PIN(float, HAL_IN, &pins->offset[i], "axguard-stop.%d.offset", i);
-        NEW_PIN(float, HAL_OUT, &pins->out[i], "axguard-stop.%d.out", i);
-        NEW_PIN(float, HAL_OUT, &pins->position[i], "axguard-stop.%d.position", i);
-        NEW_PIN(bit, HAL_IN, &pins->homed[i], "axguard-stop.%d.homed", i);
-        NEW_PIN(bit, HAL_IN, &pins->enable_in[i], "axguard-stop.%d.enable-in", i);
-        NEW_PIN(bit, HAL_OUT, &pins->enable_out[i], "axguard-stop.%d.enable-out", i);
-    }
-    NEW_PIN(bit, HAL_IN, &pins->arm, "axguard-stop.arm");
-    NEW_PIN(bit, HAL_IN, &pins->home_unguarded, "axguard-stop.home-unguarded");
-    NEW_PIN(bit, HAL_IN, &pins->spindle_on, "axguard-stop.spindle-on");
-    NEW_PIN(bit, HAL_OUT, &pins->permit_ok, "axguard-stop.permit-ok");
-    NEW_PIN(bit, HAL_OUT, &pins->feed_inhibit, "axguard-stop.feed-inhibit");
-    NEW_PIN(bit, HAL_OUT, &pins->estop_ok, "axguard-stop.estop-ok");
-    NEW_PIN(bit, HAL_OUT, &pins->stopping, "axguard-stop.stopping");
-    NEW_PIN(float, HAL_OUT, &pins->adaptive_feed, "axguard-stop.adaptive-feed");
-    NEW_PIN(bit, HAL_IN, &pins->tool_change, "axguard-stop.tool-change");
-    NEW_PIN(bit, HAL_OUT, &pins->tool_changed, "axguard-stop.tool-changed");
-    NEW_PIN(bit, HAL_OUT, &pins->tool_change_out, "axguard-stop.tool-change-out");
-    NEW_PIN(bit, HAL_IN, &pins->tool_changed_in, "axguard-stop.tool-changed-in");
-    NEW_PIN(s32, HAL_IN, &pins->tool_number, "axguard-stop.tool-number");
-    NEW_PIN(bit, HAL_IN, &pins->change_unguarded, "axguard-stop.change-unguarded");
-    NEW_PIN(bit, HAL_IN, &pins->jog, "axguard-stop.jog");
-    NEW_PIN(s32, HAL_IN, &pins->jog_joint, "axguard-stop.jog-joint");
-    NEW_PIN(bit, HAL_IN, &pins->jog_down, "axguard-stop.jog-down");
-    NEW_PIN(u32, HAL_OUT, &pins->mode, "axguard-stop.mode");
-    NEW_PIN(u32, HAL_OUT, &pins->tool, "axguard-stop.tool");
-    NEW_PIN(u32, HAL_OUT, &pins->number, "axguard-stop.sample");
-    NEW_PIN(u32, HAL_OUT, &pins->cause, "axguard-stop.cause");
-    NEW_PIN(u32, HAL_OUT, &pins->refusal, "axguard-stop.refusal");
-    NEW_PIN(u32, HAL_OUT, &pins->permits, "axguard-stop.permits");
-    NEW_PIN(u32, HAL_OUT, &pins->left, "axguard-stop.left-us");
-    NEW_PIN(u32, HAL_OUT, &pins->last_stop, "axguard-stop.last-stop-periods");
-    NEW_PIN(u32, HAL_OUT, &pins->late, "axguard-stop.late-periods");
-    NEW_PIN(u32, HAL_OUT, &pins->unheard, "axguard-stop.simulation-unheard");
-    NEW_PIN(u32, HAL_IN, &pins->simulation_wait_us, "axguard-stop.simulation-wait-us");
-    return fault ? fault : hal_export_funct("axguard-stop", update, NULL, 1, 0, comp_id);
-}
-
 int rtapi_app_main(void) {
     if (joints < 1 || joints > AXG_WIRE_JOINTS_MAX) {
         rtapi_print_msg(RTAPI_MSG_ERR, "axguard-stop: joints: found %d, expected 1 to %d\n", joints,
@@ -563,7 +512,8 @@ int rtapi_app_main(void) {
     state.still = STILL_PERIODS;
     state.tool.key_before = true;
     pins = hal_malloc(sizeof *pins);
-    int fault = pins == NULL ? -1 : make_pins();
+    int fault = pins == NULL ? -1 : make_stop_pins(pins, joints, comp_id);
+    fault = fault ? fault : hal_export_funct("axguard-stop", update, NULL, 1, 0, comp_id);
     if (fault == 0) {
         fault = hal_stream_create(&samples_out, comp_id, AXG_WIRE_SAMPLES_KEY,
                                   AXG_WIRE_SAMPLES_DEPTH, AXG_WIRE_SAMPLE_TYPES);

@@ -21,9 +21,12 @@ enum {
     AXG_WIRE_FRAME = 1,   // a frame of the guard
     AXG_WIRE_OPTION = 2,  // `length` names the option, the value is its value
     AXG_WIRE_BEGIN = 3,   // all options were sent: power up
-    AXG_WIRE_DONE = 4     // all replies to the sample with this number were sent; `length`
+    AXG_WIRE_DONE = 4,    // all replies to the sample with this number were sent; `length`
                           // is 1 when the guard may be armed, or is
+    AXG_WIRE_TEXT = 5,    // eight bytes for the operator, at 8 * `length`
+    AXG_WIRE_SHOW = 6     // the text is whole
 };
+#define AXG_WIRE_TEXT_BYTES 512
 
 // Options, in the order of axg_board_options; the last three are the first of
 // AXG_WIRE_JOINTS_MAX each, per second; without jogs 0.

@@ -23,6 +23,7 @@
 #include "firmware_if/cli/machine_options.hpp"
 #include "firmware_if/cli/progress.hpp"
 #include "firmware_if/cli/whole_file.hpp"
+#include "firmware_if/explain/format_escapes.hpp"
 #include "firmware_if/setup/choose_engine.hpp"
 #include "firmware_if/setup/guard_parts.hpp"
 #include "hil_replay/commands/commands.hpp"
@@ -33,7 +34,6 @@
 #include "hil_replay/motion/least_time.hpp"
 #include "hil_replay/motion/program_motion.hpp"
 #include "hil_replay/page/run_page.hpp"
-#include "hil_replay/replay/format_escapes.hpp"
 #include "hil_replay/replay/read_faults.hpp"
 
 namespace axg {

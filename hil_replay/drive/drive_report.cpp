@@ -10,8 +10,8 @@
 #include "core/base/sincos.hpp"
 #include "core/guard/margin_advisory.hpp"
 #include "firmware_if/cli/limit_text.hpp"
+#include "firmware_if/explain/format_escapes.hpp"
 #include "firmware_if/protocol/obeyed_by.hpp"
-#include "hil_replay/replay/format_escapes.hpp"
 #include "hil_replay/replay/replay_csv.hpp"
 
 namespace axg {

@@ -10,9 +10,9 @@
 #include "core/base/sincos.hpp"
 #include "core/certificate/pair_queries.hpp"
 #include "core/guard/escape.hpp"
+#include "firmware_if/explain/format_escapes.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
 #include "hil_replay/board/jog_driver.hpp"
-#include "hil_replay/replay/format_escapes.hpp"
 
 namespace axg {
 

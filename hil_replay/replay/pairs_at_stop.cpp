@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <memory>
 
+#include "firmware_if/explain/format_escapes.hpp"
 #include "hil_replay/replay/body_triangles.hpp"
-#include "hil_replay/replay/format_escapes.hpp"
 
 namespace axg {
 namespace {

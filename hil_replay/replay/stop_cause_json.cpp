@@ -5,7 +5,7 @@
 
 #include "core/base/sincos.hpp"
 #include "firmware_if/cli/limit_text.hpp"
-#include "hil_replay/replay/format_escapes.hpp"
+#include "firmware_if/explain/format_escapes.hpp"
 #include "hil_replay/replay/replay_csv.hpp"
 
 namespace axg {

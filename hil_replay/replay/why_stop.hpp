@@ -12,14 +12,11 @@
 #include "core/collision/engine.hpp"
 #include "core/guard/distance_need.hpp"
 #include "core/guard/monitor.hpp"
+#include "firmware_if/explain/why_sentences.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
-#include "firmware_if/setup/why_sentences.hpp"
 #include "hil_replay/trace/limit_survey.hpp"
 
 namespace axg {
-
-/// How much of a report is printed: one screen, or all of it.
-enum class Detail : std::uint8_t { brief, full };
 
 struct StopWhy {
     WhyCause cause = WhyCause::margin;

@@ -240,8 +240,8 @@ def main():
                 "axguard-stop.cause", "axguard-stop.permits", "axguard-stop.last-stop-periods",
                 "axguard-stop.simulation-unheard", "axguard.late", "axguard.samples-lost",
                 "axguard.stops", "axguard-stop.late-periods", "axguard-stop.refusal",
-                "axguard-stop.estop-ok",
-                "axguard.phase")}
+                "axguard-stop.estop-ok", "axguard.pair", "axguard.clearance-mm",
+                "axguard.needed-mm", "axguard.phase")}
         if SCENARIO.get("again"):
             RESULT["on_again"] = arm() and switch_on()
     finally:

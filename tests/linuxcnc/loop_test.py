@@ -168,6 +168,9 @@ def check_jogs(said):
         faults.append(f"jog: moved against the selected way: {jogs[2]}")
     if abs(jogs[-1]["to"] - jogs[-1]["from"] - UP["way"]) > 1e-3:
         faults.append(f"jog: not where it was to end: {jogs[-1]}")
+    withheld = "no permit here: not proven (predicted: cutter - c); jog another way"
+    if withheld not in "\n".join(said["errors"]):
+        faults.append(f"jog: the operator does not see why there is no permit: {said['errors']}")
     if said.get("after") != "done":
         faults.append(f"jog: the program afterwards: {said.get('after')}, expected done")
     return faults
@@ -185,8 +188,28 @@ def check_key(said, output):
               for key, wanted in KEY.items() if said.get("key", {}).get(key) != wanted]
     if said.get("after") != "done":
         faults.append(f"tool_unknown: the program afterwards: {said.get('after')}, expected done")
-    if UNKNOWN not in output:
-        faults.append("tool_unknown: the terminal does not name the tool and the way out")
+    shown = "\n".join(said.get("errors", []))
+    if UNKNOWN not in output or UNKNOWN not in shown:
+        faults.append("tool_unknown: terminal or operator's message lack tool and way out")
+    return faults
+
+
+# Of a stop in the last motion of COLLIDE.
+STOP_WORDS = ("stopped: verdict: predicted: cutter - c, program line 5\n",
+              "mm apart, the proof of a stop needs up to ", "jog ", ": clearance at least ", "Z+")
+
+
+def check_words(name, said, output):
+    """LinuxCNC's operator and the terminal have the pair, the line, the distances and the way out;
+    pair and clearance stay on the pins."""
+    shown = "\n".join(said.get("errors", []))
+    faults = [f"{name}: {where} lacks {words!r}" for words in STOP_WORDS
+              for where, text in (("the operator's message", shown), ("the terminal", output))
+              if words not in text.replace("\r\n", "\n")]
+    pins = said.get("pins", {})
+    has, needed = (float(pins.get(f"axguard.{pin}-mm", -1)) for pin in ("clearance", "needed"))
+    if not 0 < has < needed:
+        faults.append(f"{name}: pins: clearance {has}, needed {needed}")
     return faults
 
 
@@ -275,6 +298,7 @@ def run_all(given):
         facts = stop_facts(rows, STOPPING[machine])
         mine = check(name, is_stopped, said, rows, overruns, judged, facts)
         mine += check_key(said, output) if name == "tool_unknown" else []
+        mine += check_words(name, said, output) if name == "collide" else []
         facts_of[name] = {"samples": len(rows), "overruns": overruns, "ended": said.get("ended"),
                           "contacts": sum(stop["reason"] != "tool" for stop in judged["stops"]),
                           "stops": facts, "resumed": said.get("resumed", 0),

@@ -102,7 +102,7 @@ class Place:
         text = re.sub(r"(simulation-wait-us) \d+", rf"\1 {simulation_wait_us}", text)
         text = text.replace("addf and2.0 ", "addf sampler.0 servo-thread\naddf and2.0 ")
         if not guarded:  # the joints are where LinuxCNC sends them, and nobody is asked
-            text = re.sub(r"loadusr -W .*", "", text)
+            text = re.sub(r"loadusr -W .*|net program-line .*", "", text)
             text = re.sub(r"net out-(\d) .*\n", "", text)
             text = re.sub(r"net cmd-(\d) (\S+) => \S+",
                           r"net cmd-\1 \2 => joint.\1.motor-pos-fb sampler.0.pin.\1+1", text)

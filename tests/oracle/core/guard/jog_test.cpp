@@ -14,9 +14,9 @@
 #include <optional>
 
 #include "core/guard/escape.hpp"
+#include "firmware_if/explain/format_escapes.hpp"
 #include "hil_replay/board/jog_driver.hpp"
 #include "hil_replay/drive/drive_run.hpp"
-#include "hil_replay/replay/format_escapes.hpp"
 #include "tests/oracle/contact_scene.hpp"
 #include "tests/support/count.hpp"
 #include "tests/support/seed.hpp"

@@ -83,6 +83,12 @@ const std::vector<CanFrame>& demo_frames() {
     return frames;
 }
 
+axg_stop explained(test::CHost& host, std::int32_t program_line = 0) {
+    axg_stop stop{};
+    EXPECT_EQ(axg_guard_explain(host.guard, program_line, &stop), AXG_STATUS_OK);
+    return stop;
+}
+
 TEST(CInterfaceSamples, AreTheSameGuardAsTheirFrames) {
     const Machine machine = test::load_paper_machine().machine;
     const std::vector<axg_sample> samples = samples_of(machine, demo_frames());
@@ -183,6 +189,42 @@ TEST(CInterfaceSamples, TheStateSaysWhatWasProven) {
     EXPECT_EQ(proof.clearance_mm, -1);
 }
 
+// A stop is explained with the distances of its pair and the control's line; at rest a proven jog
+// follows, and until the reset all of it stays.
+TEST(CInterfaceSamples, AStopIsExplainedAndAtRestWithAWayOut) {
+    const Machine machine = test::load_paper_machine().machine;
+    const std::vector<axg_sample> samples = samples_of(machine, demo_frames());
+    test::CHost host(test::c_options(AXG_MODE_STOPPABLE));
+    axg_sample sample = samples[play_samples(host, samples) - 1];
+    ASSERT_EQ(host.state.phase, AXG_PHASE_STOPPED);
+    ASSERT_EQ(host.state.is_confirmed, 0);
+    const axg_stop stop = explained(host, 12);
+    ASSERT_EQ(stop.pair, host.state.pair);
+    EXPECT_GT(stop.clearance_mm, 0);
+    EXPECT_GT(stop.needed_mm, stop.clearance_mm);
+    const std::string head =
+        "stopped: verdict: predicted: " + std::string(axg_guard_pair_name(host.guard, stop.pair)) +
+        ", program line 12\n";
+    const std::string words = stop.text;
+    EXPECT_EQ(words.rfind(head, 0), 0U) << words;
+    EXPECT_NE(words.find("mm apart, the proof of a stop needs up to"), std::string::npos) << words;
+    EXPECT_EQ(std::count(words.begin(), words.end(), '\n') + 1, stop.line_count);
+    host.arms = false;
+    sample.mode = 0;
+    for (int i = 0; i < 300; ++i) {
+        sample.latched_us += 1000;
+        ++sample.number;
+        play_sample(host, sample);
+    }
+    ASSERT_EQ(host.state.is_confirmed, 1);
+    const axg_stop at_rest = explained(host, 12);
+    EXPECT_EQ(at_rest.clearance_mm, stop.clearance_mm) << "of the stop, whatever followed";
+    EXPECT_EQ(at_rest.needed_mm, stop.needed_mm);
+    EXPECT_EQ(std::string(at_rest.text).rfind(words + "\njog ", 0), 0U) << at_rest.text;
+    EXPECT_EQ(at_rest.line_count, stop.line_count + 1);
+    EXPECT_EQ(axg_guard_explain(host.guard, 0, nullptr), AXG_STATUS_BAD_CALL);
+}
+
 // An unknown tool stops, and is no dead end: the words name it, the file and the way out, and the
 // reset is accepted with a tool that the file has. Words of an earlier fault are gone by then.
 TEST(CInterfaceSamples, AnUnknownToolIsExplainedAndLeftByAnother) {
@@ -201,11 +243,7 @@ TEST(CInterfaceSamples, AnUnknownToolIsExplainedAndLeftByAnother) {
             play_sample(host, sample);
         }
     };
-    std::array<char, 400> text{};
-    const auto words = [&] {
-        axg_guard_explain(host.guard, &host.state, text.data(), text.size());
-        return std::string(text.data());
-    };
+    const auto words = [&] { return std::string(explained(host).text); };
     const auto reset = [&] {
         EXPECT_EQ(axg_guard_notify(host.guard, AXG_EVENT_RESET, host.now), AXG_STATUS_OK);
         host.cycle(host.now);

@@ -8,8 +8,8 @@
 #include "core/collision/engine.hpp"
 #include "core/guard/escape.hpp"
 #include "core/machine/axis_snapshot.hpp"
+#include "firmware_if/explain/why_sentences.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
-#include "hil_replay/replay/why_stop.hpp"
 
 namespace axg {
 

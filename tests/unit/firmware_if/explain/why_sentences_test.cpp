@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a reader is told first of a pair that was not proven: each cause has a sentence of its own,
 // none names a list of the engine, and the distance follows where the stop is about one.
-#include "firmware_if/setup/why_sentences.hpp"
+#include "firmware_if/explain/why_sentences.hpp"
 
 #include <gtest/gtest.h>
 
@@ -71,6 +71,24 @@ TEST(StopSentences, AnUnknownToolNamesTheFileAndWhatLeadsOut) {
                                         "another tool to go on"}));
     account.unknown_tool.reset();
     EXPECT_EQ(stop_sentences(account).size(), 1U) << "a known tool was loaded since";
+}
+
+TEST(StopSentences, OfAPairComeLineDistancesAndTheWayOut) {
+    StopAccount account;
+    account.cause = GuardFault::verdict;
+    account.reason = StopReason::predicted;
+    account.a = "cutter";
+    account.b = "plate";
+    account.program_line = 4;
+    account.why = facts_of(WhyCause::not_proven);
+    account.ways_out = "jog Z+ (1 mm: clearance at least 2.5000 mm)";
+    const auto sentences = stop_sentences(account);
+    ASSERT_EQ(sentences.size(), 4U);
+    EXPECT_EQ(sentences[0], "stopped: verdict: predicted: cutter - plate, program line 4");
+    EXPECT_EQ(sentences[1], "cutter (tool 1) and plate could not be proven clear");
+    EXPECT_EQ(sentences[2],
+              "they are at least 29.1470 mm apart, the proof of a stop needs up to 33.6862 mm");
+    EXPECT_EQ(sentences[3], account.ways_out);
 }
 
 TEST(StopSentences, OnlyWhatBelongsToTheCauseIsNamed) {

@@ -13,6 +13,9 @@
 
 namespace axg {
 
+/// How much of a report is printed: one screen, or all of it.
+enum class Detail : std::uint8_t { brief, full };
+
 enum class WhyCause : std::uint8_t {
     margin,      // contact mode: the pair is nearer than its margin
     contained,   // one body is inside the other: no distance is enough
@@ -42,12 +45,16 @@ struct StopAccount {
     GuardFault cause = GuardFault::none;
     StopReason reason = StopReason::none;
     std::string a, b;    // verdict about a pair: the bodies
-    std::string detail;  // input, output: the fault that stopped; empty: not known
+    std::string detail;  // input, output: the fault that stopped; may be empty
     std::string file;    // the machine file
+    std::int32_t program_line =
+        0;                        // of the control, at the stop; 0: the control does not report it
+    std::optional<WhyFacts> why;  // of the pair, if the stop is about its distance
     std::optional<std::uint16_t> unknown_tool;  // now in the spindle, and not in `file`
+    std::string ways_out;  // of format_escapes, for axes at rest; empty: none was found
 };
 
-/// The cause first; then what leads out, if it differs from that of every stop. Never empty.
+/// The cause first, then the pair's distances, then what leads out. Never empty.
 [[nodiscard]] std::vector<std::string> stop_sentences(const StopAccount& account);
 
 }  // namespace axg

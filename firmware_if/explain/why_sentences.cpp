@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware_if/setup/why_sentences.hpp"
+#include "firmware_if/explain/why_sentences.hpp"
 
 #include <fmt/format.h>
 
@@ -38,7 +38,9 @@ std::string stop_sentence(const StopAccount& account) {
     if (!account.a.empty()) {
         out += fmt::format(": {} - {}", account.a, account.b);
     }
-    return account.detail.empty() ? out : out + ": " + account.detail;
+    out += account.detail.empty() ? "" : ": " + account.detail;
+    return account.program_line > 0 ? fmt::format("{}, program line {}", out, account.program_line)
+                                    : out;
 }
 
 }  // namespace
@@ -83,10 +85,17 @@ std::vector<std::string> why_sentences(const WhyFacts& facts) {
 
 std::vector<std::string> stop_sentences(const StopAccount& account) {
     std::vector<std::string> out{stop_sentence(account)};
+    if (account.why) {
+        const std::vector<std::string> sentences = why_sentences(*account.why);
+        out.insert(out.end(), sentences.begin(), sentences.end());
+    }
     if (account.unknown_tool) {
         out.push_back(
             fmt::format("tool {} is not in {}: add it under tools; load another tool to go on",
                         *account.unknown_tool, account.file));
+    }
+    if (!account.ways_out.empty()) {
+        out.push_back(account.ways_out);
     }
     return out;
 }

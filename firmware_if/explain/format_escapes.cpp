@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hil_replay/replay/format_escapes.hpp"
+#include "firmware_if/explain/format_escapes.hpp"
 
 #include <fmt/format.h>
 
