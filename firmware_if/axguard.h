@@ -259,6 +259,10 @@ AXG_API const char* axg_guard_pair_name(const axg_guard* guard, uint32_t pair);
 // @param program_line  of the control, at the stop; 0: not known
 AXG_API axg_status axg_guard_explain(axg_guard* guard, int32_t program_line, axg_stop* out);
 
+// Returns the length_mm of a tool of the machine file, also before the start; -1: it has no such
+// tool. Tool 0 is first_tool, as in samples.
+AXG_API double axg_guard_tool_length_mm(const axg_guard* guard, uint16_t tool);
+
 // Returns what the machine file states for a board; also before the start.
 AXG_API axg_status axg_guard_terms(const axg_guard* guard, axg_terms* out);
 

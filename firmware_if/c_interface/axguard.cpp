@@ -519,6 +519,18 @@ axg_status axg_guard_explain(axg_guard* guard, int32_t program_line, axg_stop* o
     }
 }
 
+double axg_guard_tool_length_mm(const axg_guard* guard, uint16_t tool) {
+    if (guard == nullptr) {
+        return -1;
+    }
+    const axg::Machine& machine = guard->loaded.machine;
+    const std::uint16_t number = tool != 0 ? tool : machine.first_tool;
+    const auto found =
+        std::find_if(machine.tools.begin(), machine.tools.end(),
+                     [number](const axg::Tool& one) { return one.number == number; });
+    return found == machine.tools.end() ? -1 : found->length_mm;
+}
+
 axg_status axg_guard_terms(const axg_guard* guard, axg_terms* out) {
     if (guard == nullptr || out == nullptr) {
         return AXG_STATUS_BAD_CALL;

@@ -46,6 +46,8 @@ typedef struct host {
     bool has_said;
     explained explained;
     axg_stop stop;  // in force
+    uint16_t tool;  // whose length was sent
+    bool has_tool;
     uint32_t lines_said;
     int32_t program_line;  // of the stop
     bool was_armed;        // before the stop
@@ -377,6 +379,12 @@ static void take_sample(host* host, const union hal_stream_data record[]) {
                 (unsigned)sample.tool);
     }
     host->is_refused = is_refused;
+    if (!host->has_tool || sample.tool != host->tool) {
+        uint8_t data[8] = {(uint8_t)sample.tool, (uint8_t)(sample.tool >> 8)};
+        host->tool = sample.tool;
+        host->has_tool = send(host, AXG_WIRE_LENGTH, 0, 0, data,
+                              axg_guard_tool_length_mm(host->guard, sample.tool));
+    }
     take_hash(host, record);
     if (host->has_arms && record[4].u != host->arms) {
         axg_bus_press(&host->bus, host_ns() / 1000);

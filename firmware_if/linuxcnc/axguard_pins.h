@@ -6,6 +6,7 @@
 #include <hal.h>
 #include <stddef.h>
 
+#include "firmware_if/linuxcnc/axguard_length.h"
 #include "firmware_if/linuxcnc/axguard_wire.h"
 
 typedef struct stop_pins {
@@ -18,7 +19,8 @@ typedef struct stop_pins {
     hal_bit_t* enable_out[AXG_WIRE_JOINTS_MAX];  // stays on until the ramp has ended
     hal_bit_t *arm, *permit_ok, *feed_inhibit, *estop_ok, *stopping, *spindle_on, *home_unguarded,
         *change_unguarded;
-    hal_float_t* adaptive_feed;
+    hal_float_t *adaptive_feed, *length, *length_tolerance;
+    hal_bit_t* length_differs;
     hal_bit_t *tool_change, *tool_changed, *tool_change_out, *tool_changed_in, *jog, *jog_down;
     hal_s32_t *tool_number, *jog_joint;
     hal_u32_t *mode, *tool, *number, *cause, *refusal, *permits, *left, *simulation_wait_us,
@@ -54,6 +56,9 @@ static inline int make_stop_pins(stop_pins* pins, int joints, int comp_id) {
     NEW_PIN(bit, HAL_IN, &pins->tool_changed_in, "axguard-stop.tool-changed-in");
     NEW_PIN(s32, HAL_IN, &pins->tool_number, "axguard-stop.tool-number");
     NEW_PIN(bit, HAL_IN, &pins->change_unguarded, "axguard-stop.change-unguarded");
+    NEW_PIN(float, HAL_IN, &pins->length, "axguard-stop.tool-offset-z");
+    NEW_PIN(float, HAL_IN, &pins->length_tolerance, "axguard-stop.tool-length-tolerance");
+    NEW_PIN(bit, HAL_OUT, &pins->length_differs, "axguard-stop.tool-length-differs");
     NEW_PIN(bit, HAL_IN, &pins->jog, "axguard-stop.jog");
     NEW_PIN(s32, HAL_IN, &pins->jog_joint, "axguard-stop.jog-joint");
     NEW_PIN(bit, HAL_IN, &pins->jog_down, "axguard-stop.jog-down");
@@ -68,6 +73,9 @@ static inline int make_stop_pins(stop_pins* pins, int joints, int comp_id) {
     NEW_PIN(u32, HAL_OUT, &pins->late, "axguard-stop.late-periods");
     NEW_PIN(u32, HAL_OUT, &pins->unheard, "axguard-stop.simulation-unheard");
     NEW_PIN(u32, HAL_IN, &pins->simulation_wait_us, "axguard-stop.simulation-wait-us");
+    if (fault == 0) {
+        *pins->length_tolerance = AXG_LENGTH_TOLERANCE_MM;
+    }
     return fault;
 }
 

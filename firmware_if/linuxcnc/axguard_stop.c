@@ -14,6 +14,7 @@
 #include <time.h>
 
 #include "firmware_if/board/axguard_board.h"
+#include "firmware_if/linuxcnc/axguard_length.h"
 #include "firmware_if/linuxcnc/axguard_period.h"
 #include "firmware_if/linuxcnc/axguard_pins.h"
 #include "firmware_if/linuxcnc/axguard_tool.h"
@@ -52,6 +53,7 @@ typedef struct stop_state {
     bool guard_is_ready;  // it sends no stop frame any more: a board armed before would stop again
     uint8_t hashes_wanted;
     axg_tool tool;
+    axg_length length;
     bool is_jog, jogs_down;  // as the samples report it
     int jog_joint;
     uint64_t done;  // last sample with all replies received
@@ -104,6 +106,7 @@ static void begin(void) {
     state.has_begun = is_complete && brakes && is_ours && is_up;
     state.tool.number = (uint16_t)state.option[AXG_WIRE_TOOL];
     state.tool.step = AXG_TOOL_NONE;
+    axg_length_begin(&state.length, state.tool.number);
     state.hashes_wanted = 0;
     state.arm_left = 0;
     state.guard_is_ready = false;
@@ -153,6 +156,11 @@ static void take_message(const union hal_stream_data* message) {
             state.done = message[1].u | (uint64_t)message[2].u << 32;
             state.waits = true;
             state.guard_is_ready = index != 0;
+            break;
+        case AXG_WIRE_LENGTH:
+            state.length.file_tool = message[1].u;
+            state.length.file_mm = message[3].f;
+            state.length.is_known = message[3].f >= 0;
             break;
         case AXG_WIRE_TEXT:
             if (index < AXG_WIRE_TEXT_BYTES / 8) {
@@ -351,6 +359,24 @@ static bool is_fast(void) {
     return is_moving;
 }
 
+// Whether axes may move: the board's permit, for the tool that LinuxCNC has too. In motion a wrong
+// length is a stop; at rest it withholds the permit until the lengths agree.
+static axg_board_motion may_move(void) {
+    const bool differed = state.length.differs;
+    const bool differs = axg_length_compare(&state.length, state.tool.number, *pins->length,
+                                            *pins->length_tolerance);
+    if (differs && !differed) {
+        rtapi_print_msg(RTAPI_MSG_ERR, AXG_LENGTH_WORDS, (unsigned)state.tool.number, *pins->length,
+                        state.length.file_mm, *pins->length_tolerance);
+    }
+    if (differs && is_fast()) {
+        axg_board_stop(&state.board, now_us());
+    }
+    axg_board_motion motion = axg_board_may_move(&state.board, now_us());
+    motion.may_move = motion.may_move && !differs;
+    return motion;
+}
+
 // Moves the joints for one period. Without permission a joint in motion is brought to rest, and
 // one at rest stays; a command that leaves it then opens the E-stop chain.
 static void move(bool may_pass, const double wanted[], bool is_aligned, double period_s) {
@@ -426,6 +452,7 @@ static void show(const axg_board_motion* motion) {
     *pins->feed_inhibit = !may_pass || state.is_jog;  // a program does not run in a jog
     *pins->adaptive_feed =
         motion->may_move ? motion->ordered.of[0] / (double)AXG_BOARD_CAP_NONE : 1;
+    *pins->length_differs = state.length.differs;
     *pins->stopping = state.is_ramping;
     *pins->estop_ok = !state.is_latched || state.is_ramping;
     *pins->number = (uint32_t)state.count;
@@ -474,7 +501,7 @@ static void update(void* unused, long period_ns) {
     wait_for_the_guard();
     select_jog();
     arm();
-    axg_board_motion motion = axg_board_may_move(&state.board, now_us());
+    axg_board_motion motion = may_move();
     change_tool(motion.may_move);
     const bool is_aligned = read_commands(wanted);
     const bool is_homing =
@@ -492,7 +519,7 @@ static void update(void* unused, long period_ns) {
         axg_board_latch(&state.board, &sample);
     }
     send_sample();
-    motion = axg_board_may_move(&state.board, now_us());
+    motion = may_move();
     show(&motion);
 }
 

@@ -24,7 +24,8 @@ enum {
     AXG_WIRE_DONE = 4,    // all replies to the sample with this number were sent; `length`
                           // is 1 when the guard may be armed, or is
     AXG_WIRE_TEXT = 5,    // eight bytes for the operator, at 8 * `length`
-    AXG_WIRE_SHOW = 6     // the text is whole
+    AXG_WIRE_SHOW = 6,    // the text is whole
+    AXG_WIRE_LENGTH = 7   // the value is length_mm of the tool of the first word; negative: none
 };
 #define AXG_WIRE_TEXT_BYTES 512
 

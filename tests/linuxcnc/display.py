@@ -184,6 +184,21 @@ def change_by_key():
     RESULT["after"] = run_program("after.ngc")
 
 
+def correct_length():
+    """The tool table had another length; without one, and with the right one, programs run."""
+    RESULT["length"] = said = {"differs": pin("axguard-stop.tool-length-differs"),
+                               "permit": pin("axguard-stop.permit-ok"),
+                               "x": float(pin("axguard-stop.0.position"))}
+    COMMAND.abort()
+    COMMAND.mode(linuxcnc.MODE_MDI)
+    COMMAND.wait_complete()
+    COMMAND.mdi("G49")
+    said["permit_without"] = until(lambda: pin("axguard-stop.permit-ok") == "TRUE", 2)
+    COMMAND.mdi("G10 L1 P1 Z140")
+    COMMAND.wait_complete()
+    RESULT["after"] = run_program("after.ngc")
+
+
 def is_due(event, began):
     """After so many seconds, or when a pin has fallen below a value."""
     if "pin" in event:
@@ -231,6 +246,8 @@ def main():
             RESULT["ended"] = run_program("program.ngc")
         if RESULT["ended"] == "stopped" and "jogs" in SCENARIO:
             jog_out()
+        if RESULT["ended"] == "limit" and "length" in SCENARIO:
+            correct_length()
         if RESULT["ended"] == "limit" and "key" in SCENARIO:
             change_by_key()
         time.sleep(0.3)

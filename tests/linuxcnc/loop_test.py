@@ -92,6 +92,9 @@ def scenarios(source):
         "tool_in_motion": (SWING, True, {"events": [{"do": "tool_change", "after_s": 1.5}]}),
         "tool_unknown": (TOOLS.replace("T2 M6", "T3 M6"), False,
                          {"limit_s": 5, "key": True, "after": AFTER}),
+        "tool_length": (HEAD + "G0 X20\nG43 H1\nG0 X-20\nM2\n", False,
+                        {"limit_s": 4, "length": True, "table": "T1 P1 Z160 D12 ;20 mm longer\n",
+                         "after": HEAD + "G43 H1\nG0 X-20\nG0 X0\nM2\n"}),
         "xyzac_clean": (TIP_CLEAN, False, {}),
         "xyzac_collide": (TIP_COLLIDE, True, {}),
         "xyzbc_clean": (TIP_CLEAN.replace("A", "B"), False, {}),
@@ -105,7 +108,7 @@ def scenarios(source):
 
 # At most three minutes; the others run by hand, by name.
 USUAL = ["clean", "collide", "kill_approach", "late", "estop", "unguarded", "jog", "tool",
-         "tool_collide", "tool_unknown", "xyzac_clean"]
+         "tool_collide", "tool_unknown", "tool_length", "xyzac_clean"]
 
 
 def tip_error(rows, machine):
@@ -194,6 +197,21 @@ def check_key(said, output):
     return faults
 
 
+LENGTH = {"differs": "TRUE", "permit": "FALSE", "x": 20.0, "permit_without": True}
+
+
+def check_length(said):
+    """With another length in the tool table no joint moves, and both numbers are shown."""
+    faults = [f"tool_length: {key}: found {said.get('length', {}).get(key)}, expected {wanted}"
+              for key, wanted in LENGTH.items() if said.get("length", {}).get(key) != wanted]
+    if said.get("after") != "done":
+        faults.append(f"tool_length: the program afterwards: {said.get('after')}, expected done")
+    if "length is 160.000 mm, length_mm of the machine file 140.000 mm" not in "".join(
+            said.get("errors", [])):
+        faults.append(f"tool_length: the operator does not see both: {said.get('errors')}")
+    return faults
+
+
 # Of a stop in the last motion of COLLIDE.
 STOP_WORDS = ("stopped: verdict: predicted: cutter - c, program line 5\n",
               "mm apart, the proof of a stop needs up to ", "jog ", ": clearance at least ", "Z+")
@@ -227,7 +245,8 @@ def check(name, is_stopped, said, rows, overruns, judged, facts):
         return faults
     if not said["armed"] or "pins" not in said:
         return faults + [f"{name}: not armed"]
-    wanted = "stopped" if is_stopped else "limit" if name == "tool_unknown" else "done"
+    waits = name in ("tool_unknown", "tool_length")
+    wanted = "stopped" if is_stopped else "limit" if waits else "done"
     if said["ended"] != wanted:
         faults.append(f"{name}: found {said['ended']}, expected {wanted}")
     if name == "tool_unknown":  # the judge knows no such tool either
@@ -298,6 +317,7 @@ def run_all(given):
         facts = stop_facts(rows, STOPPING[machine])
         mine = check(name, is_stopped, said, rows, overruns, judged, facts)
         mine += check_key(said, output) if name == "tool_unknown" else []
+        mine += check_length(said) if name == "tool_length" else []
         mine += check_words(name, said, output) if name == "collide" else []
         facts_of[name] = {"samples": len(rows), "overruns": overruns, "ended": said.get("ended"),
                           "contacts": sum(stop["reason"] != "tool" for stop in judged["stops"]),

@@ -72,6 +72,9 @@ class Place:
         shutil.copy(pathlib.Path(__file__).parent / "display.py", self.folder)
         (self.folder / "display.py").chmod(0o755)
         (self.folder / "program.ngc").write_text(program, encoding="ascii")
+        table = self.folder / f"{self.name}.tbl"
+        table.write_text(scenario.pop("table", table.read_text(encoding="ascii")),
+                         encoding="ascii")
         (self.folder / "after.ngc").write_text(scenario.pop("after", "M2\n"), encoding="ascii")
         scenario.update(guarded=guarded)
         (self.folder / "scenario.json").write_text(json.dumps(scenario), encoding="utf-8")

@@ -312,6 +312,10 @@ TEST(CInterfaceSamples, TheTermsAreThoseOfTheMachineFile) {
     axg_terms terms{};
     EXPECT_EQ(axg_guard_terms(host.guard, nullptr), AXG_STATUS_BAD_CALL);
     ASSERT_EQ(axg_guard_terms(host.guard, &terms), AXG_STATUS_OK);
+    EXPECT_EQ(axg_guard_tool_length_mm(host.guard, 1), 140);
+    EXPECT_EQ(axg_guard_tool_length_mm(host.guard, 0), 140) << "first_tool";
+    EXPECT_EQ(axg_guard_tool_length_mm(host.guard, 2), -1);
+    EXPECT_EQ(axg_guard_tool_length_mm(nullptr, 1), -1);
     EXPECT_EQ(terms.period_us, 1000U);
     EXPECT_EQ(terms.reaction_us, 2000U);
     EXPECT_EQ(terms.jitter_us, 20U);
