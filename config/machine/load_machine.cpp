@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "config/machine/load_machine.hpp"
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "config/can/read_can.hpp"
 #include "config/machine/parse_machine.hpp"
@@ -43,14 +45,57 @@ void read_top(MapReader& top, MachineDraft& draft) {
     read_cycle(top, draft);
 }
 
-}  // namespace
+/// Merges maps key by key; any other value of `changes` replaces that of `root`.
+void merge(const YamlNode& changes, YamlNode& root) {
+    std::vector<std::pair<const YamlNode*, YamlNode*>> open{{&changes, &root}};
+    while (!open.empty()) {
+        const auto [from, to] = open.back();
+        open.pop_back();
+        const auto target = [to = to](const std::string& key) {
+            return std::find_if(to->entries.begin(), to->entries.end(),
+                                [&key](const YamlEntry& entry) { return entry.key == key; });
+        };
+        for (const YamlEntry& entry : from->entries) {  // new keys first: they move the others
+            if (target(entry.key) == to->entries.end()) {
+                to->entries.push_back(entry);
+            }
+        }
+        for (const YamlEntry& entry : from->entries) {
+            YamlNode& value = target(entry.key)->value;
+            if (entry.value.kind == YamlNode::Kind::map && value.kind == YamlNode::Kind::map) {
+                open.emplace_back(&entry.value, &value);
+            } else {
+                value = entry.value;
+            }
+        }
+    }
+}
 
-std::vector<ConfigFault> parse_machine(const std::string& text, const std::string& file,
-                                       Machine& out, const NamedFiles& files) {
+/// How the files are read that a stored text names: from the stored ones.
+NamedFiles stored_files(const MachineText& source) {
+    return [&source](const std::string& name, std::size_t size_bytes_max) {
+        const auto found = source.named.find(name);
+        return found == source.named.end() || found->second.size() > size_bytes_max
+                   ? NamedFile{{},
+                               "a file that is not in the compiled machine",
+                               "a machine compiled with it; run axguard compile again"}
+                   : NamedFile{found->second, {}, {}};
+    };
+}
+
+std::vector<ConfigFault> parse(const std::string& text, const std::vector<std::string>& changes,
+                               const std::string& file, Machine& out, const NamedFiles& files) {
     FaultList faults{file};
     YamlNode root;
     if (!parse_yaml(text, faults, root)) {
         return faults.in_order();
+    }
+    for (const std::string& change : changes) {
+        YamlNode changed;
+        if (!parse_yaml(change, faults, changed)) {
+            return faults.in_order();
+        }
+        merge(changed, root);
     }
     MachineDraft draft{.machine = {}, .faults = faults, .files = files};
     MapReader top{root,
@@ -68,17 +113,21 @@ std::vector<ConfigFault> parse_machine(const std::string& text, const std::strin
     return faults.in_order();
 }
 
+}  // namespace
+
+std::vector<ConfigFault> parse_machine(const std::string& text, const std::string& file,
+                                       Machine& out, const NamedFiles& files) {
+    return parse(text, {}, file, out, files);
+}
+
 std::vector<ConfigFault> parse_machine(const MachineText& source, Machine& out) {
-    return parse_machine(
-        source.text, source.file, out,
-        [&source](const std::string& name, std::size_t size_bytes_max) {
-            const auto found = source.named.find(name);
-            return found == source.named.end() || found->second.size() > size_bytes_max
-                       ? NamedFile{{},
-                                   "a file that is not in the compiled machine",
-                                   "a machine compiled with it; run axguard compile again"}
-                       : NamedFile{found->second, {}, {}};
-        });
+    return parse(source.text, {}, source.file, out, stored_files(source));
+}
+
+std::vector<ConfigFault> parse_changed_machine(const MachineText& source,
+                                               const std::vector<std::string>& changes,
+                                               Machine& out) {
+    return parse(source.text, changes, source.file, out, stored_files(source));
 }
 
 std::vector<ConfigFault> load_machine(const std::string& path, Machine& out, MachineText& source) {

@@ -21,4 +21,9 @@ namespace axg {
 /// The machine that the text describes, as load_machine() read it; nothing is opened.
 [[nodiscard]] std::vector<ConfigFault> parse_machine(const MachineText& source, Machine& out);
 
+/// The same with other values. Each change is YAML of the form of a machine file: each of its keys
+/// replaces that of the text, or is added to it; maps are merged.
+[[nodiscard]] std::vector<ConfigFault> parse_changed_machine(
+    const MachineText& source, const std::vector<std::string>& changes, Machine& out);
+
 }  // namespace axg
