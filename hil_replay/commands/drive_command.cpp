@@ -26,6 +26,7 @@
 #include "firmware_if/explain/format_escapes.hpp"
 #include "firmware_if/setup/choose_engine.hpp"
 #include "firmware_if/setup/guard_parts.hpp"
+#include "hil_replay/advice/advise_drive.hpp"
 #include "hil_replay/commands/commands.hpp"
 #include "hil_replay/commands/details_option.hpp"
 #include "hil_replay/commands/drive_command.hpp"
@@ -181,18 +182,6 @@ void look_for_ways_out(const DriveArguments& arguments, const LoadedMachine& loa
     }
 }
 
-void keep_caps(const Machine& machine, double smooth_s, double* share, AxisShares* shares,
-               BoardOptions& board) {
-    if (machine.guard.cap == CapPromise::none) {
-        return;
-    }
-    const bool is_per_axis = machine.guard.cap == CapPromise::per_axis;
-    board.speed_share = is_per_axis ? nullptr : share;
-    board.axis_shares = is_per_axis ? shares : nullptr;
-    board.cap_smooth_s = smooth_s;
-    board.slow_share = has_clearance_levels(machine) ? kSlowShare : 1;
-}
-
 int read_inputs(const DriveArguments& arguments, LoadedMachine& loaded, DriveOptions& options,
                 GcodeOptions& gcode, GcodeResult& reading) {
     if (const int code = load(arguments.machine, loaded); code != kExitClean) {
@@ -246,6 +235,26 @@ int write_results(const DriveArguments& arguments, const LoadedMachine& loaded,
         (page == nullptr || write_page(arguments, loaded, report, page->finish())) && is_written;
     return write_json(arguments.json, describe_drive(report)) && is_written ? exit_code
                                                                             : kExitInternal;
+}
+
+/// Drives a program that was stopped again with other settings; the report explains the stop.
+void advise(const DriveArguments& arguments, const LoadedMachine& loaded,
+            const ContainmentTest& containment_test, const Program& program,
+            const AxisPositions& start, DriveReport& report) {
+    const DriveStop& stop = report.result.guard_stop;
+    const std::int64_t stopped_us = stop.snapshot.latched_us - kBoardStartUs;
+    const bool is_plain = arguments.faults.empty() && !arguments.obeys_cap;
+    if (!report.why || !is_plain || !is_advisable(stop.reason, stop.unproven) ||
+        static_cast<double>(stopped_us) > arguments.advice_s * 1e6) {
+        return;
+    }
+    const RunEnd first{.is_stopped = true,
+                       .is_complete = true,
+                       .pair = stop.pair,
+                       .left_mm = report.why->available_mm,
+                       .snapshot = stop.snapshot};
+    const BoardRun run{report.engine, containment_test, program, start, arguments.seed};
+    advise_drive({loaded, run, first, stop.unproven}, report.why->advice.emplace());
 }
 
 int run_drive(const DriveArguments& arguments) {
@@ -314,6 +323,7 @@ int run_drive(const DriveArguments& arguments) {
     report.lines = std::move(lines);
     if (!is_finished) {
         look_for_ways_out(arguments, loaded, containment_test, options, report);
+        advise(arguments, loaded, containment_test, reading.program, gcode.start, report);
     }
     return write_results(arguments, loaded, report, csv, page.get(), report_if_gave_up(chosen));
 }
@@ -369,6 +379,13 @@ void add_drive(CommandLine& line) {
                               .one_of({"cpu", "cuda", "auto"});
     command.add_flag("--obey-cap", arguments->obeys_cap,
                      "obey the permit's speed cap and report the time lost to it");
+    const Option advice =
+        command
+            .add_option("--advice-s", arguments->advice_s,
+                        "drive a stop within this many seconds again with other values of the "
+                        "machine file; prints those that stop nearer; 0: none")
+            .between(0.0, 1e6)
+            .shows_default();
     const Option jog_out = command.add_flag(
         "--jog-out", arguments->jogs_out,
         "after a stop: jog along the best way out until other motion is permitted");
@@ -389,6 +406,7 @@ void add_drive(CommandLine& line) {
         {faults,
          "--faults: not available; disconnect the cable, stop axguardd, or slow the interface with "
          "tc netem"},
+        {advice, "--advice-s: not available; no program is run twice on a bus"},
         {jog_out, "--jog-out: not available; each jog needs a newly started guard"}};
     command.set_action([arguments, of_the_guard] {
         return arguments->bus.empty()                  ? run_drive(*arguments)

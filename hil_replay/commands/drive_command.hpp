@@ -21,6 +21,7 @@ struct DriveArguments {
     GcodeArguments gcode;
     std::string engine, mode = "stoppable", faults, csv, report, bus;
     bool obeys_cap = false, jogs_out = false, has_details = false;
+    double advice_s = 60;
     std::uint64_t seed = 1;
     JsonOutput json;
 };
@@ -37,11 +38,6 @@ struct DriveArguments {
 void look_for_ways_out(const DriveArguments& arguments, const LoadedMachine& loaded,
                        const ContainmentTest& containment_test, const DriveOptions& options,
                        DriveReport& report);
-
-/// If the machine file promises a cap, makes the board follow the caps of the permits: it sets
-/// `share` or `shares` at every tick, and the motion reads them. Both must outlive the drive.
-void keep_caps(const Machine& machine, double smooth_s, double* share, AxisShares* shares,
-               BoardOptions& board);
 
 /// False: `--report` could not be written; the reason is printed.
 [[nodiscard]] bool write_page(const DriveArguments& arguments, const LoadedMachine& loaded,

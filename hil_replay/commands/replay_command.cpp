@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,6 +24,7 @@
 #include "firmware_if/cli/progress.hpp"
 #include "firmware_if/setup/choose_engine.hpp"
 #include "firmware_if/setup/guard_parts.hpp"
+#include "hil_replay/advice/advise_replay.hpp"
 #include "hil_replay/commands/black_box_command.hpp"
 #include "hil_replay/commands/commands.hpp"
 #include "hil_replay/commands/details_option.hpp"
@@ -49,6 +51,7 @@ struct ReplayArguments {
     std::uint32_t multiprocessors = 0;
     double within_mm = 50.0;
     double arm_at_s = -1;  // negative: when it is ready
+    double advice_s = 10;
     bool keep_going = false, lenient = false, is_realtime = false, has_details = false;
     JsonOutput json;
 };
@@ -272,6 +275,29 @@ std::optional<AddedSession> added_session(const TraceShape& shape, const CanLayo
     return shape.lacks_session ? std::optional(AddedSession(can)) : std::nullopt;
 }
 
+/// Runs the first stop again with other settings; `report` explains it already.
+void advise(const ReplayArguments& arguments, const TraceShape& shape, ReplayReport& report) {
+    const std::span<const StopEvent> stops = report.run.stops();
+    if (arguments.advice_s <= 0 || stops.empty() || !report.whys.contains(&stops.front())) {
+        return;
+    }
+    GcodeArguments gcode = arguments.gcode;
+    if (gcode.program.empty() && is_program_of(report.lines)) {
+        gcode.program = report.lines.program;
+    }
+    report.whys.at(&stops.front()).advice =
+        advise_replay({report.loaded,
+                       report.engine.engine(),
+                       report.containment_test,
+                       report.trace,
+                       {.lenient = arguments.lenient, .device = arguments.device},
+                       shape.lacks_session,
+                       report.run.limits(),
+                       stops.front(),
+                       gcode,
+                       arguments.advice_s});
+}
+
 int replay(const ReplayArguments& arguments, const ReplayObserver& observer) {
     LoadedMachine loaded;
     if (const int code = load(arguments.machine, loaded); code != kExitClean) {
@@ -331,6 +357,7 @@ int replay(const ReplayArguments& arguments, const ReplayObserver& observer) {
                         std::move(lines),
                         shape.period};
     explain_stops(report);
+    advise(arguments, shape, report);
     print_replay(report, detail_of(arguments.has_details), arguments.json.words());
     if (observer) {
         observer(report);
@@ -390,6 +417,12 @@ void add_replay(CommandLine& line, const ReplayObserver& observer) {
         .add_option("--arm-at", arguments->arm_at_s,
                     "arm at this time of the trace, s [default: as soon as the guard is ready]")
         .between(0.0, 1e10);
+    command
+        .add_option("--advice-s", arguments->advice_s,
+                    "seconds before the first stop to run again with other values of the machine "
+                    "file; prints those that stop nearer; 0: none")
+        .between(0.0, 1e6)
+        .shows_default();
     command.add_flag("--keep-going", arguments->keep_going, "continue after a stop");
     command.add_output("--csv", arguments->csv,
                        "write one CSV line per sample: axes, permit, clearances");

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/guard/margin_advisory.hpp"
+
 namespace axg {
 
 namespace {
@@ -24,6 +26,18 @@ BoardOptions promised_board(const Machine& machine, std::uint64_t seed) {
     board.latched_age = machine.can.latched_age;
     board.cap = machine.guard.cap;
     return board;
+}
+
+void keep_caps(const Machine& machine, double smooth_s, double* share, AxisShares* shares,
+               BoardOptions& board) {
+    if (machine.guard.cap == CapPromise::none) {
+        return;
+    }
+    const bool is_per_axis = machine.guard.cap == CapPromise::per_axis;
+    board.speed_share = is_per_axis ? nullptr : share;
+    board.axis_shares = is_per_axis ? shares : nullptr;
+    board.cap_smooth_s = smooth_s;
+    board.slow_share = has_clearance_levels(machine) ? kSlowShare : 1;
 }
 
 AxisSnapshot snapshot_at_rest(const Machine& machine, const DriveResult& result) {

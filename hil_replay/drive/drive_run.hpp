@@ -92,6 +92,11 @@ class DriveTally {
 /// Options for drawing a board that fulfils the promises of the machine file, and no more.
 [[nodiscard]] BoardOptions promised_board(const Machine& machine, std::uint64_t seed);
 
+/// If the machine file promises a cap, makes the board follow the caps of the permits: it sets
+/// `share` or `shares` at every tick, and the motion reads them. Both must outlive the drive.
+void keep_caps(const Machine& machine, double smooth_s, double* share, AxisShares* shares,
+               BoardOptions& board);
+
 /// @param each  called after every sample; false ends the run. May be empty
 /// @param watch  the true axes, every `watch_us`; may be empty
 struct DriveObservers {

@@ -37,21 +37,14 @@ function whySentences(why) {
               ${mm(why.open.needed_mm)} and has ${mm(why.open.available_mm)}`);
   }
   if (why.full_list) out.push(`a list of the engine was full: ${why.full_list}`);
-  const {remedies} = why;
-  if (!remedies) return out;
-  const proven = [];
-  if (remedies.alone) proven.push("the lists of the cycle for this pair alone");
-  if (remedies.speed_share !== undefined) {
-    proven.push(remedies.speed_share > 0
-      ? `${Math.round(100 * remedies.speed_share)} % of this speed` : "standstill");
+  if (!why.advice) return out;
+  const {settings, tried} = why.advice;
+  for (const one of settings) {
+    const gain = one.gone ? `no stop for ${one.after_s.toFixed(1)} s`
+                          : `${one.gain_mm.toFixed(2)} mm nearer`;
+    out.push(`${gain} with these lines in the machine file: ${one.lines.join(" ")}`);
   }
-  if (remedies.margin_mm !== undefined) {
-    proven.push(`a margin of ${remedies.margin_mm.toFixed(3)} mm`);
-  }
-  if (remedies.queries) proven.push(`a larger plan, in which this pair takes ${remedies.queries} queries`);
-  if (remedies.limits) proven.push(`limits as this trace shows them: ${remedies.limits}`);
-  out.push(proven.length > 0 ? `this sample is proven with: ${proven.join("; ")}`
-                             : "nothing that was tried proves it");
+  if (settings.length === 0) out.push(`${tried} other settings were run: none stops nearer`);
   return out;
 }
 

@@ -34,6 +34,23 @@ Json remedies_json(const StopWhy& why) {
     return out;
 }
 
+Json advice_json(const Advice& advice) {
+    Json settings = Json::array();
+    for (const AdvisedSetting& setting : advice.settings) {
+        Json one{
+            {"lines", setting.lines}, {"driven", setting.is_driven}, {"gone", setting.is_gone}};
+        if (setting.is_gone) {
+            one["after_s"] = setting.after_s;
+        } else {
+            one["left_mm"] = setting.left_mm;
+            one["gain_mm"] = setting.gain_mm;
+        }
+        settings.push_back(std::move(one));
+    }
+    return {
+        {"tried", advice.tried}, {"driven", advice.was_driven}, {"settings", std::move(settings)}};
+}
+
 Json vector_json(Vec3d v) {
     return {v.x, v.y, v.z};
 }
@@ -132,6 +149,9 @@ Json why_json(const Machine& machine, const StopWhy& why) {
         add_reach(machine, why, out);
     }
     out["remedies"] = remedies_json(why);
+    if (why.advice) {
+        out["advice"] = advice_json(*why.advice);
+    }
     return out;
 }
 

@@ -18,6 +18,22 @@
 
 namespace axg {
 
+/// Other values of the machine file with which the motion of a stop was run again.
+struct AdvisedSetting {
+    std::vector<std::string> lines;  // YAML, a map each, to be merged into the machine file
+    bool is_gone = false;            // no stop in what was run
+    double after_s = 0;              // gone: how long that lasted beyond the stop
+    double left_mm = 0;              // else: distance of the pair at the new stop
+    double gain_mm = 0;              // how much nearer that is
+    bool is_driven = false;          // on the simulated board, which runs the program
+};
+struct Advice {
+    std::uint32_t tried = 0;               // settings that were run
+    std::vector<AdvisedSetting> settings;  // that gain kAdviceGainMm; the best first
+    bool was_driven = false;               // also those that change the motion
+};
+inline constexpr double kAdviceGainMm = 0.5;
+
 struct StopWhy {
     WhyCause cause = WhyCause::margin;
     std::uint32_t pair = kNoIndex;
@@ -37,6 +53,7 @@ struct StopWhy {
     bool has_reach = false;
     JointBox reach;                 // every position of the axes that was to be proven
     std::vector<ReachBody> bodies;  // the pair's, in it
+    std::optional<Advice> advice;   // empty: nothing was run again
 };
 
 /// The list's key in cycle.lists and capacities of the machine file; null: `status` is no overflow.
@@ -60,7 +77,7 @@ struct WhySources {
 [[nodiscard]] std::optional<StopWhy> why_of(const WhySources& sources, const StopFacts& stop);
 /// The plain sentences of a stop, without indent and end.
 [[nodiscard]] std::vector<std::string> why_sentences(const Machine& machine, const StopWhy& why);
-/// Lines of a report, each with its end: sentences and remedies; in full lists and parts too.
+/// Lines of a report, each with its end: sentences and advice; in full lists and parts too.
 [[nodiscard]] std::string format_why(const Machine& machine, const StopWhy& why, Detail detail);
 
 }  // namespace axg

@@ -2,6 +2,7 @@
 // Formats the explanation of a stop as lines of the report.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string>
 
 #include "hil_replay/replay/replay_csv.hpp"
@@ -9,8 +10,6 @@
 
 namespace axg {
 namespace {
-
-constexpr const char* kProvenWith = "this sample is proven with: ";
 
 std::string name_of(const Machine& machine, const StopWhy& why) {
     return pair_name(machine, why.pair) +
@@ -44,41 +43,42 @@ std::string parts_text(const StopWhy& why) {
                               need.margin_mm, need.arithmetic_mm);
 }
 
-/// In brief without counts and lists.
-std::string remedies_text(const StopWhy& why, Detail detail) {
-    const bool is_full = detail == Detail::full;
-    std::string text;
-    const auto add = [&text](const std::string& remedy) {
-        text += (text.empty() ? "" : "; ") + remedy;
-    };
-    const NeedRemedies& remedies = why.remedies;
-    if (remedies.is_alone) {
-        add(is_full ? "the lists of the cycle for this pair alone (cycle: in the machine file)"
-                    : "a cycle for this pair alone");
-    }
-    if (remedies.speed_share) {
-        add(*remedies.speed_share > 0
-                ? fmt::format("{:.0f} % of this speed", *remedies.speed_share * 100)
-                : "standstill");
-    }
-    if (remedies.margin_mm) {
-        add(fmt::format("a margin of {:.3f} mm", *remedies.margin_mm));
-    }
-    if (remedies.queries) {
-        add(is_full
-                ? fmt::format("a larger plan, in which this pair takes {} queries (cycle: in the "
-                              "machine file)",
-                              *remedies.queries)
-                : "a larger plan of the cycle");
-    }
-    if (remedies.are_other_limits) {
-        add(is_full ? "limits as this trace shows them: " + why.other_limits
-                    : "limits as in this trace");
-    }
-    return text;
+constexpr std::size_t kBriefAdviceLines = 5;
+constexpr const char* kNotDriven =
+    "  caps and commands ahead change the motion: axguard drive runs a program with them\n";
+
+std::string gain_text(const AdvisedSetting& setting) {
+    return setting.is_gone ? fmt::format("no stop for {:.1f} s", setting.after_s)
+                           : fmt::format("{:.2f} mm nearer", setting.gain_mm);
 }
 
-/// Lists, parts and remedies.
+/// The settings that gain, the best first; in brief as many as there is room for.
+std::string advice_text(const Advice& advice, Detail detail) {
+    const char* const missing = advice.was_driven ? "" : kNotDriven;
+    if (advice.settings.empty()) {
+        return fmt::format("  {} other settings were run: none stops {:g} mm nearer\n{}",
+                           advice.tried, kAdviceGainMm, missing);
+    }
+    std::string text =
+        "  nearer with these lines in the machine file, if they are true; each was run:\n";
+    const bool is_mixed =
+        std::any_of(advice.settings.begin(), advice.settings.end(),
+                    [](const AdvisedSetting& setting) { return !setting.is_driven; });
+    std::size_t printed = 0;
+    for (const AdvisedSetting& setting : advice.settings) {
+        if (detail == Detail::brief && printed + setting.lines.size() > kBriefAdviceLines) {
+            continue;
+        }
+        for (std::size_t i = 0; i < setting.lines.size(); ++i, ++printed) {
+            text +=
+                fmt::format("    {:<19} {}{}\n", i == 0 ? gain_text(setting) : "", setting.lines[i],
+                            i == 0 && is_mixed && setting.is_driven ? "  # axguard drive" : "");
+        }
+    }
+    return text + missing;
+}
+
+/// Lists and parts.
 std::string format_parts(const Machine& machine, const StopWhy& why) {
     std::string text = fmt::format("  why ({}): {} ", to_text(why.cause), name_of(machine, why));
     if (why.cause == WhyCause::contained) {
@@ -101,12 +101,10 @@ std::string format_parts(const Machine& machine, const StopWhy& why) {
     }
     if (why.is_list_full) {
         const char* const list = full_list(why.full);
-        text += fmt::format("    a list of the engine was full{} (cycle: in the machine file)\n",
+        text += fmt::format("    a list of the engine was full{}\n",
                             list == nullptr ? "" : fmt::format(": {}", list));
     }
-    const std::string remedies = remedies_text(why, Detail::full);
-    return text + (remedies.empty() ? "    nothing that was tried proves it\n"
-                                    : fmt::format("    {}{}\n", kProvenWith, remedies));
+    return text;
 }
 
 }  // namespace
@@ -150,11 +148,8 @@ std::string format_why(const Machine& machine, const StopWhy& why, Detail detail
     for (const std::string& sentence : why_sentences(machine, why)) {
         text += "  " + sentence + "\n";
     }
-    if (detail == Detail::full) {
-        return text + format_parts(machine, why);
-    }
-    const std::string remedies = remedies_text(why, Detail::brief);
-    return text + (remedies.empty() ? "" : fmt::format("  {}{}\n", kProvenWith, remedies));
+    text += detail == Detail::full ? format_parts(machine, why) : "";
+    return text + (why.advice ? advice_text(*why.advice, detail) : "");
 }
 
 }  // namespace axg

@@ -124,6 +124,12 @@ void set_trace(ProgramLines& lines, const std::string& trace) {
     lines.trace_crc = crc_of_file(trace);
 }
 
+bool is_program_of(const ProgramLines& lines) {
+    std::uint64_t size_bytes = 0;
+    return !lines.program.empty() && exists(lines.program, size_bytes) &&
+           crc_of_file(lines.program) == lines.program_crc;
+}
+
 void add_blocks(ProgramLines& lines, std::string_view program_text) {
     lines.program_crc = crc_of(program_text);
     std::vector<std::string_view> blocks{{}};  // line 0 is none

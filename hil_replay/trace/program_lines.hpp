@@ -48,6 +48,9 @@ void add_blocks(ProgramLines& lines, std::string_view program_text);
 [[nodiscard]] std::string load_program_lines(const std::string& trace, const std::string& path,
                                              ProgramLines& out);
 
+/// Whether the program's file is there and has not changed since.
+[[nodiscard]] bool is_program_of(const ProgramLines& lines);
+
 /// The step at an instant; null: before the first one, or of line 0.
 [[nodiscard]] const ProgramStep* step_at(const ProgramLines& lines, std::int64_t time_us) noexcept;
 /// "  FILE:LINE: BLOCK" and the end of the line, for a terminal; empty: no step.
