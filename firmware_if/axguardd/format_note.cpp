@@ -5,6 +5,8 @@
 
 #include <string_view>
 
+#include "firmware_if/explain/why_sentences.hpp"
+
 namespace axg {
 namespace {
 
@@ -36,9 +38,15 @@ char* write_cause(const LiveNote& note, const Machine& machine, char* out, std::
         return out;
     }
     char* const end = fmt::format_to_n(out, size, ": {}", to_text(note.cause)).out;
-    return note.cause == GuardFault::verdict
-               ? write_reason(note, machine, end, size - static_cast<std::size_t>(end - out))
-               : end;
+    if (note.cause != GuardFault::verdict) {
+        return end;
+    }
+    char* const next = write_reason(note, machine, end, size - static_cast<std::size_t>(end - out));
+    return note.reason == StopReason::tool
+               ? fmt::format_to_n(next, size - static_cast<std::size_t>(next - out),
+                                  "; the machine file does not have it: {}", kUnknownToolWay)
+                     .out
+               : next;
 }
 
 char* write_period(const LiveNote& note, char* out, std::size_t size) {

@@ -411,9 +411,16 @@ std::string words_of_guard(const Json& json) {
                        words_of_board_test(json.at("board_test")));
 }
 
+/// The way out of a stop that needs one of its own.
+std::string words_of_way_out(const Json& json) {
+    return json.at("reason") == to_text(StopReason::tool)
+               ? fmt::format("  the machine file does not have this tool: {}\n", kUnknownToolWay)
+               : std::string();
+}
+
 std::string words_of_view(const Json& json) {
-    std::string out = words_of_why(json, "why", "pair") + words_of_withheld(json) +
-                      words_of_why(json, "withheld_why", "withheld_pair");
+    std::string out = words_of_why(json, "why", "pair") + words_of_way_out(json) +
+                      words_of_withheld(json) + words_of_why(json, "withheld_why", "withheld_pair");
     if (count_at(json, "age_ms") > kHeldMs) {
         out += fmt::format("no update for {} ms: the bus thread of the guard is blocked\n",
                            count_at(json, "age_ms"));

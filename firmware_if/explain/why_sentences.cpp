@@ -90,9 +90,8 @@ std::vector<std::string> stop_sentences(const StopAccount& account) {
         out.insert(out.end(), sentences.begin(), sentences.end());
     }
     if (account.unknown_tool) {
-        out.push_back(
-            fmt::format("tool {} is not in {}: add it under tools; load another tool to go on",
-                        *account.unknown_tool, account.file));
+        out.push_back(fmt::format("tool {} is not in {}: {}", *account.unknown_tool, account.file,
+                                  kUnknownToolWay));
     }
     if (!account.ways_out.empty()) {
         out.push_back(account.ways_out);

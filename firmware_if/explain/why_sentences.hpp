@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/guard/guard_state.hpp"
@@ -39,6 +40,10 @@ struct WhyFacts {
 
 /// One or two sentences: the missing proof; then the distance, if the cause is about one.
 [[nodiscard]] std::vector<std::string> why_sentences(const WhyFacts& facts);
+
+/// What leads out of a stop with an unknown tool.
+inline constexpr std::string_view kUnknownToolWay =
+    "add it under tools; load another tool to go on";
 
 /// A stop in force, as its reader sees it.
 struct StopAccount {

@@ -110,6 +110,16 @@ TEST_F(StatusLineTest, OfAStopItNamesCauseReasonAndPair) {
     EXPECT_TRUE(json()["pair"].is_null());
 }
 
+TEST_F(StatusLineTest, AnUnknownToolIsShownWithTheWayOut) {
+    const std::string way =
+        "does not have this tool: add it under tools; load another tool to go "
+        "on\n";
+    stop(GuardFault::verdict, StopReason::tool);
+    EXPECT_NE(words().text.find(way), std::string::npos) << words().text;
+    stop(GuardFault::verdict, StopReason::contact);
+    EXPECT_EQ(words().text.find(way), std::string::npos) << words().text;
+}
+
 TEST_F(StatusLineTest, OfAWithheldPermitItNamesWhatIsNotProven) {
     view.phase = GuardPhase::selftest;
     view.withheld = {WithheldPermit::Why::not_proven, StopReason::predicted, 0};

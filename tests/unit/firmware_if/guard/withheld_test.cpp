@@ -127,6 +127,12 @@ TEST_F(Withheld, TheLineNamesTheBodies) {
     note.reason = StopReason::contact;
     note.pair = 1;
     EXPECT_EQ(words().substr(0, 47), "12.000345 stopped: verdict: contact: cutter - c");
+    note.reason = StopReason::tool;
+    note.pair = kNoIndex;
+    EXPECT_EQ(words(),
+              "12.000345 stopped: verdict: tool; the machine file does not have it: add it under "
+              "tools; load another tool to go on; when the machine is at rest and the cause is "
+              "removed, reset with kill -USR2\n");
 }
 
 }  // namespace
