@@ -138,8 +138,9 @@ std::optional<CudaEngine> roomy_engine(const LoadedMachine& loaded, std::string&
     }
 
 TEST_F(CudaCertificate, WithLongListsPairsAreDecidedAlike) {
-    // A whole box has a quarter of a stage's list, shared by all boxes left open, and the GPU counts
-    // on behind the first contact: with 2^26 pairs of triangles 179 pairs are full, with 2^28 four.
+    // A whole box has a quarter of a stage's list, shared by all boxes left open, and the GPU
+    // counts on behind the first contact: with 2^26 pairs of triangles 179 pairs are full, with
+    // 2^28 four.
     paper.loaded.machine.cycle.lists = {1U << 22U, 1U << 22U, 1U << 26U, 1U << 29U, 0};
     AXG_GPU_OR_SKIP(gpu);
     const Tally tally = compare(*gpu, "long lists", 20261128);
