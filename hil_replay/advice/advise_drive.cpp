@@ -13,7 +13,7 @@ namespace {
 // A setting that leaves no more than this makes a stronger one of its kind needless.
 constexpr double kEnoughMm = 0.1;
 
-/// Whether an earlier run of the kinds `weaker` shows that `kind` cannot help more.
+/// Whether an earlier setting of the kind leaves so little that `kind` needs no run.
 bool is_needless(SettingKind kind, bool is_cap_enough, bool is_ahead_enough) noexcept {
     return (kind == SettingKind::cap_per_axis && is_cap_enough) ||
            (kind == SettingKind::path_keeping && is_ahead_enough);

@@ -39,7 +39,8 @@ std::optional<RunEnd> run_board(const LoadedMachine& loaded, const BoardRun& run
         options);
     const DriveStop& stop = result.guard_stop;
     RunEnd end{.is_stopped = has_reason(stop) || result.is_held,
-               .is_complete = result.encoded.status == EncodeStatus::ok,
+               .is_complete =
+                   result.encoded.status == EncodeStatus::ok && result.state != BoardState::waiting,
                .pair = has_reason(stop) ? stop.pair : run.pair,
                .snapshot = has_reason(stop) ? stop.snapshot : snapshot_at_rest(machine, result),
                .ended_us = result.ended_us};

@@ -17,7 +17,7 @@ namespace axg {
 /// End of a motion. No pair: it did not stop for one.
 struct RunEnd {
     bool is_stopped = false;
-    bool is_complete = false;  // no fault of trace or frames
+    bool is_complete = false;  // it began, and neither trace nor frames had a fault
     std::uint32_t pair = kNoIndex;
     double left_mm = 0;         // of that pair, certified, at the sample of the stop
     AxisSnapshot snapshot{};    // the sample of the stop
