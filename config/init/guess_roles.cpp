@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
+#include <map>
+#include <set>
 #include <string_view>
 
 #include "config/text/map_reader.hpp"
@@ -33,26 +36,85 @@ std::string stem_of(std::string_view file) {
     return std::string{file.substr(0, file.find_last_of('.'))};
 }
 
-std::vector<std::string> words_of(std::string_view stem) {
-    std::vector<std::string> words(1);
-    for (const char c : stem) {
-        if (is_letter(c)) {
-            words.back() += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-        } else if (!words.back().empty()) {
+using Names = std::vector<std::string>;  // the words of one file's name, in small letters
+
+bool is_capital(char c) noexcept {
+    return c >= 'A' && c <= 'Z';
+}
+
+/// "XAxis" and "x_axis" are x and axis; so are "Xaxis" and "axisX", which no letter parts.
+Names words_of(std::string_view stem) {
+    constexpr std::string_view kAxis = "axis";
+    Names words(1);
+    for (std::size_t i = 0; i < stem.size(); ++i) {
+        const char c = stem[i];
+        const bool begins =
+            i > 0 && is_capital(c) && is_letter(stem[i - 1]) &&
+            (!is_capital(stem[i - 1]) ||
+             (i + 1 < stem.size() && is_letter(stem[i + 1]) && !is_capital(stem[i + 1])));
+        if ((begins || !is_letter(c)) && !words.back().empty()) {
             words.emplace_back();
         }
+        if (is_letter(c)) {
+            words.back() += is_capital(c) ? static_cast<char>(c - 'A' + 'a') : c;
+        }
+    }
+    for (std::string& word : words) {
+        if (word.size() == kAxis.size() + 1 && word.ends_with(kAxis)) {
+            word.resize(1);
+        } else if (word.size() == kAxis.size() + 1 && word.starts_with(kAxis)) {
+            word = word.substr(kAxis.size());
+        }
+    }
+    if (words.size() > 1 && words.back().empty()) {
+        words.pop_back();
     }
     return words;
 }
 
-char role_of(const std::string& stem) {
-    const std::vector<std::string> words = words_of(stem);
+char role_of(const Names& words) {
     for (const Word& known : kWords) {
         if (std::find(words.begin(), words.end(), known.text) != words.end()) {
             return known.role;
         }
     }
     return '\0';
+}
+
+/// Without a last (or first) word that most files share, if the rest tells them apart: in
+/// "table_b", "head_b" and "c_axis_b" the letter names the machine, not an axis.
+void drop_shared_word(std::vector<Names>& files, bool is_last) {
+    std::map<std::string, std::vector<std::size_t>> sharers;
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        if (files[i].size() > 1) {
+            sharers[is_last ? files[i].back() : files[i].front()].push_back(i);
+        }
+    }
+    for (const auto& [word, places] : sharers) {
+        std::set<char> roles;
+        std::vector<Names> rest = files;
+        for (const std::size_t place : places) {
+            rest[place].erase(is_last ? rest[place].end() - 1 : rest[place].begin());
+            roles.insert(role_of(rest[place]));
+        }
+        roles.erase('\0');
+        if (2 * places.size() > files.size() && places.size() > 2 && roles.size() > 1) {
+            files = std::move(rest);
+            return;
+        }
+    }
+}
+
+std::vector<char> roles_of(const std::vector<std::string>& files) {
+    std::vector<Names> names;
+    for (const std::string& file : files) {
+        names.push_back(words_of(stem_of(file)));
+    }
+    drop_shared_word(names, true);
+    drop_shared_word(names, false);
+    std::vector<char> roles;
+    std::transform(names.begin(), names.end(), std::back_inserter(roles), role_of);
+    return roles;
 }
 
 /// Position of a role in the chains: the fixed parts, the table's side from the bottom up, the
@@ -109,9 +171,10 @@ std::vector<RoleGuess> guess_roles(const std::vector<std::string>& files) {
     std::vector<Candidate> candidates;
     bool has_tool = false;
     bool moves = false;
+    const std::vector<char> roles = roles_of(files);
     for (std::uint32_t i = 0; i < files.size(); ++i) {
         const std::string stem = stem_of(files[i]);
-        char role = role_of(stem);
+        char role = roles[i];
         role = role == 'T' && has_tool ? '\0' : role;  // one tool body at most
         has_tool |= role == 'T';
         moves |= role >= 'A' && role <= 'Z' && role != 'T' && role != 'F';

@@ -20,9 +20,12 @@ struct RoleGuess {
     bool is_table_side = false;        // carries the workpiece: commanded motion runs the other way
     std::uint32_t parent = kNoParent;  // index in the result
     std::uint32_t file = 0;            // index of the file
-    // Stated by another file: name, axis, parent, where the mesh is and a point on its axis.
+    // Stated by another file: name, axis, parent, where the mesh is, a point on its axis and which
+    // way it moves.
     bool is_stated = false;
     Vec3d at_mm{}, pivot_mm{};  // if stated
+    bool is_reversed = false;   // if stated: moves against its axis when the command is positive
+    std::string way_doubt, pivot_doubt;  // if stated: why a person has to confirm the value
 };
 
 /// One guess a file, parents first. Table side: Y carries X carries A, B, C. Head side: Z carries

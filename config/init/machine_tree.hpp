@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bodies, parents and pivots from the machine.yml of a QtPyVCP screen, which draws a machine in
-// LinuxCNC. It states neither which way a body moves nor a tool.
-// Source: the machine.yml of Probe Basic's simulator and how its program draws it.
+// Bodies, parents, directions and pivots from the machine.yml of a QtPyVCP screen, which draws a
+// machine in LinuxCNC. It states no tool.
+// Source: QtPyVCP ba8f741e (2026-02-23). machine_actor.py, items_recursive: each nested map is a
+// part, whatever its key. vtk_backplot.py, move_part: a part turns about its `position`; `origin`
+// is stored only; a minus before the axis reverses the motion.
 #pragma once
 
 #include <string>

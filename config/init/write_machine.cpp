@@ -77,8 +77,8 @@ bool is_rotary(char axis) noexcept {
 }
 
 const char* direction_of(const RoleGuess& role) noexcept {
-    const int axis = (role.axis - (is_rotary(role.axis) ? 'A' : 'X'));
-    if (role.is_table_side) {
+    const std::size_t axis = kAxisOrder.find(role.axis) % 3;  // A and U are along X
+    if (role.is_stated ? role.is_reversed : role.is_table_side) {
         return axis == 0 ? "[-1, 0, 0]" : axis == 1 ? "[0, -1, 0]" : "[0, 0, -1]";
     }
     return axis == 0 ? "[1, 0, 0]" : axis == 1 ? "[0, 1, 0]" : "[0, 0, 1]";
@@ -185,9 +185,10 @@ std::string axes_text(const std::vector<RoleGuess>& roles, const std::vector<Ini
     return text;
 }
 
-/// Behind a value; of one that is stated, nothing.
-std::string guess_of(const RoleGuess& role, const char* why) {
-    return role.is_stated ? std::string() : fmt::format("  {}: {}", kGuessMark, why);
+/// Behind a value; of one that is stated, nothing unless there is a doubt about it.
+std::string guess_of(const RoleGuess& role, const std::string& why, const std::string& doubt = {}) {
+    const std::string& reason = role.is_stated ? doubt : why;
+    return reason.empty() ? std::string() : fmt::format("  {}: {}", kGuessMark, reason);
 }
 
 std::string body_text(const RoleGuess& role, const SurveyedMesh& mesh,
@@ -200,9 +201,12 @@ std::string body_text(const RoleGuess& role, const SurveyedMesh& mesh,
     if (role.axis != '\0') {
         text += fmt::format(
             "    axis: {}{}\n"
-            "    direction: {}  {}: a positive command moves{} this body this way\n",
-            role.axis, guess_of(role, "from the name of the file"), direction_of(role), kGuessMark,
-            is_rotary(role.axis) ? " (turns, right hand)" : "");
+            "    direction: {}{}\n",
+            role.axis, guess_of(role, "from the name of the file"), direction_of(role),
+            guess_of(role,
+                     fmt::format("a positive command moves{} this body this way",
+                                 is_rotary(role.axis) ? " (turns, right hand)" : ""),
+                     role.way_doubt));
     } else if (!role.is_stated) {
         text +=
             fmt::format("    {}: fixed to {}; if it moves, add axis and direction\n", kGuessMark,
@@ -210,9 +214,10 @@ std::string body_text(const RoleGuess& role, const SurveyedMesh& mesh,
     }
     if (is_rotary(role.axis)) {
         const Vec3d middle = 0.5 * (mesh.min_mm + mesh.max_mm);
-        text += fmt::format(
-            "    pivot_mm: {}{}\n", numbers(role.is_stated ? role.pivot_mm : middle),
-            guess_of(role, "the middle of the mesh; a point on the axis it turns about"));
+        text +=
+            fmt::format("    pivot_mm: {}{}\n", numbers(role.is_stated ? role.pivot_mm : middle),
+                        guess_of(role, "the middle of the mesh; a point on the axis it turns about",
+                                 role.pivot_doubt));
     }
     if (role.is_tool) {
         return text + fmt::format("    tool: true  {}: from the name of the file\n", kGuessMark);

@@ -150,15 +150,20 @@ std::string way_down(const fs::path& from, const fs::path& to) {
     return is_below ? way.generic_string() : "";
 }
 
-/// Checks that the text loads, with the loader itself.
+/// Checks that the text loads, with the loader itself. Its lines are those of no file.
 bool is_sound(const std::string& text, const InitOptions& options) {
     Machine machine;
-    const std::vector<ConfigFault> faults = parse_machine(text, options.out, machine);
-    for (const ConfigFault& fault : faults) {
+    std::vector<ConfigFault> faults = parse_machine(text, options.out, machine);
+    bool is_of_names = false;
+    for (ConfigFault& fault : faults) {
+        fault.where = escaped(options.out, 4096);
         fmt::print(stderr, "{}\n", to_string(fault));
+        is_of_names |= fault.key.ends_with(".file");
     }
     if (!faults.empty()) {
-        fmt::print(stderr, "no file written. Rename the files or the folder, then try again.\n");
+        fmt::print(
+            stderr, "no file written. {}, then try again.\n",
+            is_of_names ? "Rename the files or the folder" : "Correct the input of this key");
     }
     return faults.empty();
 }
@@ -249,8 +254,9 @@ void add_init(CommandLine& line) {
         .required();
     command.add_option("--meshes", options->folder,
                        "folder of the STL files [default: folder of the INI file]");
-    command.add_input("--tree", options->tree,
-                      "machine.yml of a QtPyVCP screen (source of parents, axes and pivots)");
+    command.add_input(
+        "--tree", options->tree,
+        "machine.yml of a QtPyVCP screen (source of parents, axes, signs and pivots)");
     command.add_output("-o,--out", options->out, "machine file to write").required();
     command
         .add_option(

@@ -339,6 +339,36 @@ TEST_F(Commands, InitNamesTheMeshRootWhenTheMeshesLieElsewhere) {
               kExitClean);
 }
 
+// What a tree names under any key is a body; what it does not name is printed; a tree that makes no
+// machine is refused by its own lines, not by those of a file that nobody can open.
+TEST_F(Commands, InitWritesEachPartOfATree) {
+    for (const char* name : {"bed.stl", "ram.stl", "lamp.stl"}) {
+        write_mesh(name);
+    }
+    const std::string bed =
+        "root:\n  id: bed\n  model: meshes/bed.stl\n  type: table\n"
+        "  position: [0, 0, 0, 0, 0, 0]\n  axis: null\n";
+    const std::string ram =
+        "  ram:\n    id: ram\n    model: meshes/ram.stl\n    type: linear\n"
+        "    position: [0, 0, 0, 0, 0, 0]\n    axis: \"-z\"\n";
+    const std::vector<std::string> words{"init",   path("meshes"), "-o",     path("m.yaml"),
+                                         "--unit", "mm",           "--tree", path("t.yml")};
+    std::ofstream(path("t.yml")) << bed << ram;
+    const Outcome run = axguard(words);
+    EXPECT_EQ(run.exit_code, kExitClean) << run.err;
+    EXPECT_EQ(run.err, "lamp.stl: left out: not in " + path("t.yml") + '\n');
+    EXPECT_TRUE(has(read(path("m.yaml")), "    axis: Z\n    direction: [0, 0, -1]\n"));
+    EXPECT_EQ(axguard({"check", path("m.yaml")}).exit_code, kExitClean);
+    fs::remove(path("m.yaml"));
+    std::ofstream(path("t.yml")) << bed;
+    const Outcome one = axguard(words);
+    EXPECT_EQ(one.exit_code, kExitInput);
+    EXPECT_TRUE(has(one.err, path("t.yml") + ":1: root: invalid value (found 1 part")) << one.err;
+    EXPECT_FALSE(has(one.err, "left out") || has(one.err, "m.yaml") || has(one.err, "Rename"))
+        << one.err;
+    EXPECT_FALSE(fs::exists(path("m.yaml")));
+}
+
 TEST_F(Commands, InitRefusesAFolderItCannotUse) {
     EXPECT_EQ(axguard({"init", path("none"), "-o", path("m.yaml"), "--unit", "mm"}).exit_code,
               kExitInput);
