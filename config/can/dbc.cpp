@@ -16,7 +16,12 @@ namespace {
 
 constexpr std::size_t kNameBytesMax = 128;
 constexpr std::uint32_t kExtendedFlag = 0x80000000U;
-constexpr std::uint32_t kNoMessage = 0xC0000000U;  // VECTOR__INDEPENDENT_SIG_MSG: of no message
+// Holds the signals of no message, under one of two identifiers that no message can have.
+constexpr std::string_view kNoMessage = "VECTOR__INDEPENDENT_SIG_MSG";
+bool is_of_no_message(std::uint32_t id) noexcept {
+    return id == 0xC0000000U || id == 0x40000000U;
+}
+
 constexpr std::uint32_t kFrameFormatFd = 14, kFrameFormatExtendedFd = 15;  // of VFrameFormat
 // Words that begin a section. A list of names without an end sign ends before one of them.
 constexpr std::string_view kSections =
@@ -247,7 +252,8 @@ bool DbcParser::read_message() {
     }
     message.is_extended = (id & kExtendedFlag) != 0;
     message.id = id & ~kExtendedFlag;
-    if (id != kNoMessage && message.id > (message.is_extended ? 0x1FFFFFFFU : 0x7FFU)) {
+    const bool is_message = !is_of_no_message(id) || now_.text != kNoMessage;
+    if (is_message && message.id > (message.is_extended ? 0x1FFFFFFFU : 0x7FFU)) {
         faults_.add(message.line, "BO_", std::to_string(id),
                     "an identifier up to 2047, or one of 29 bits with bit 31 set");
     }
@@ -262,7 +268,7 @@ bool DbcParser::read_message() {
         section_ = "BO_ " + message.name;
         read_signal(message);
     }
-    if (id == kNoMessage || !is_sound_) {
+    if (!is_message || !is_sound_) {
         return is_sound_;
     }
     if (dbc_.messages.size() >= kDbcMessagesMax) {
@@ -433,7 +439,7 @@ void DbcParser::apply_remarks() {
                 found = signal.name == remark.signal ? &signal : found;
             }
         }
-        if (found == nullptr && remark.id != kNoMessage) {
+        if (found == nullptr && !is_of_no_message(remark.id)) {
             faults_.add(remark.line, key, quoted(remark.signal), "a signal of that message");
         } else if (found != nullptr) {
             apply_type(*found, remark, key);

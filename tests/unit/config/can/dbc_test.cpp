@@ -87,11 +87,14 @@ TEST(DbcFile, FlexibleFramesAreTheLongOnesAndThoseSaidToBe) {
 }
 
 TEST(DbcFile, TheMessageOfNoMessageIsReadOver) {
-    const Dbc dbc = read(
-        "BO_ 3221225472 VECTOR__INDEPENDENT_SIG_MSG: 0 Vector__XXX\n"
-        " SG_ Lost : 0|8@1+ (1,0) [0|0] \"\" Vector__XXX\n"
-        "SIG_VALTYPE_ 3221225472 Lost : 1;\n");
-    EXPECT_TRUE(dbc.messages.empty());
+    for (const std::string id : {"3221225472", "1073741824"}) {
+        const Dbc dbc = read("BO_ " + id +
+                             " VECTOR__INDEPENDENT_SIG_MSG: 0 Vector__XXX\n"
+                             " SG_ Lost : 0|8@1+ (1,0) [0|0] \"\" Vector__XXX\n"
+                             "SIG_VALTYPE_ " +
+                             id + " Lost : 1;\n");
+        EXPECT_TRUE(dbc.messages.empty()) << id;
+    }
 }
 
 TEST(DbcFile, WhatRestatesASignalKeepsItFromUse) {
