@@ -78,6 +78,9 @@ class EdsReader {
         return found == entries_.end() ? nullptr : &found->second;
     }
     bool value_of(const std::string& section, std::uint32_t& out, int* line = nullptr);
+    [[nodiscard]] std::optional<std::uint32_t> sum_of(std::string_view rest) const;
+    [[nodiscard]] std::optional<std::uint32_t> default_of(const std::string& section,
+                                                          std::uint32_t used) const;
     void read_device();
     void read_pdos();
     bool read_map(std::uint32_t index, EdsPdo& pdo);
@@ -149,34 +152,52 @@ bool EdsReader::value_of(const std::string& section, std::uint32_t& out, int* li
         if (line != nullptr) {
             *line = entry->line;
         }
-        // $NODEID+0x180, or the two the other way round.
-        std::uint32_t sum = 0;
-        bool has_node = false;
-        std::string_view rest = entry->value;
-        bool is_sound = true;
-        while (is_sound) {
-            const std::size_t plus = std::min(rest.find('+'), rest.size());
-            const std::string_view part = trimmed(rest.substr(0, plus));
-            const bool is_node = lowered(part) == "$nodeid";
-            const std::optional<std::uint32_t> number =
-                is_node ? std::optional{node_} : number_of(part);
-            is_sound = number.has_value() && !(is_node && has_node);
-            sum += number.value_or(0);
-            has_node |= is_node;
-            if (plus == rest.size()) {
-                break;
-            }
-            rest.remove_prefix(plus + 1);
-        }
-        if (!is_sound) {
+        const std::optional<std::uint32_t> sum = sum_of(entry->value);
+        if (!sum) {
             faults_.add(entry->line, section + '.' + key, quoted(entry->value, 40),
                         "a number, such as 385, 0x181 or $NODEID+0x180");
             return false;
         }
-        out = sum;
+        out = *sum;
         return true;
     }
     return false;
+}
+
+/// $NODEID+0x180, or the two the other way round.
+std::optional<std::uint32_t> EdsReader::sum_of(std::string_view rest) const {
+    std::uint32_t sum = 0;
+    bool has_node = false;
+    for (;;) {
+        const std::size_t plus = std::min(rest.find('+'), rest.size());
+        const std::string_view part = trimmed(rest.substr(0, plus));
+        const bool is_node = lowered(part) == "$nodeid";
+        const std::optional<std::uint32_t> number =
+            is_node ? std::optional{node_} : number_of(part);
+        if (!number || (is_node && has_node)) {
+            return std::nullopt;
+        }
+        sum += *number;
+        has_node |= is_node;
+        if (plus == rest.size()) {
+            return sum;
+        }
+        rest.remove_prefix(plus + 1);
+    }
+}
+
+/// An EDS describes every device of its type: a number that replaces $NODEID is that of one of
+/// them. A DCF is written for one node.
+std::optional<std::uint32_t> EdsReader::default_of(const std::string& section,
+                                                   std::uint32_t used) const {
+    const Entry* const written = find(section, "parametervalue");
+    const Entry* const usual = find(section, "defaultvalue");
+    if (eds_.node || written == nullptr || written->value.empty() || usual == nullptr ||
+        lowered(usual->value).find("$nodeid") == std::string::npos) {
+        return std::nullopt;
+    }
+    const std::optional<std::uint32_t> sum = sum_of(usual->value);
+    return sum && *sum != used ? sum : std::nullopt;
 }
 
 void EdsReader::read_device() {
@@ -248,6 +269,7 @@ void EdsReader::read_pdos() {
         const std::string base = hex(index) + "sub";
         if (value_of(base + '1', pdo.cob_id, &pdo.line) &&
             value_of(base + '2', pdo.transmission_type) && read_map(index + 0x200, pdo)) {
+            pdo.default_cob_id = default_of(base + '1', pdo.cob_id);
             eds_.pdos.push_back(std::move(pdo));
         }
     }

@@ -22,6 +22,8 @@ struct EdsPdo {
     int line = 0;              // of its COB-ID
     std::uint32_t cob_id = 0;  // 0x1800 + n, sub 1: bit 31 is off, bit 29 an extended id
     std::uint32_t transmission_type = 0;
+    // What DefaultValue gives this node, if a file that names no node has another ParameterValue.
+    std::optional<std::uint32_t> default_cob_id{};
     std::vector<std::uint32_t> map;  // index << 16 | subindex << 8 | bits, the active ones
 };
 

@@ -259,6 +259,14 @@ bool DriveReader::read_file(std::vector<Pdo>& pdos) {
             }
             continue;
         }
+        if (one.default_cob_id) {
+            draft_.doubts.push_back(
+                draft_.faults.where(reader_.line_of("file")) + ": " + reader_.path_of("file") +
+                ": TPDO" + std::to_string(one.number) + " is awaited under ParameterValue " +
+                hex(one.cob_id, 3) + place + "; DefaultValue makes it " +
+                hex(*one.default_cob_id, 3) + " for node " + std::to_string(node) +
+                ". Delete ParameterValue if it is that of another node.");
+        }
         pdos.push_back({id_of_cob(one.cob_id), one.map, place});
     }
     return faults.empty();

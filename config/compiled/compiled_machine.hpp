@@ -20,6 +20,9 @@ struct CompiledMachine {
     MachineText source;
     Machine machine;
     MachineMeshes meshes;
+    // Lines to review, in addition to those of `source` (config/mesh/drawing_doubts.hpp). Of a
+    // machine file only; not compiled.
+    std::vector<std::string> doubts{};
 };
 
 /// Whether a file is read as a compiled machine: its name ends in .axg.

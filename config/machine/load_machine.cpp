@@ -84,7 +84,8 @@ NamedFiles stored_files(const MachineText& source) {
 }
 
 std::vector<ConfigFault> parse(const std::string& text, const std::vector<std::string>& changes,
-                               const std::string& file, Machine& out, const NamedFiles& files) {
+                               const std::string& file, Machine& out, const NamedFiles& files,
+                               std::vector<std::string>* doubts = nullptr) {
     FaultList faults{file};
     YamlNode root;
     if (!parse_yaml(text, faults, root)) {
@@ -110,14 +111,18 @@ std::vector<ConfigFault> parse(const std::string& text, const std::vector<std::s
     if (faults.empty()) {
         out = std::move(draft.machine);
     }
+    if (doubts != nullptr) {
+        *doubts = std::move(draft.doubts);
+    }
     return faults.in_order();
 }
 
 }  // namespace
 
 std::vector<ConfigFault> parse_machine(const std::string& text, const std::string& file,
-                                       Machine& out, const NamedFiles& files) {
-    return parse(text, {}, file, out, files);
+                                       Machine& out, const NamedFiles& files,
+                                       std::vector<std::string>* doubts) {
+    return parse(text, {}, file, out, files, doubts);
 }
 
 std::vector<ConfigFault> parse_machine(const MachineText& source, Machine& out) {
@@ -142,13 +147,15 @@ std::vector<ConfigFault> load_machine(const std::string& path, Machine& out, Mac
     source = {place.filename().string(), std::move(text), {}};
     const std::string folder = place.parent_path().string();
     return parse_machine(
-        source.text, path, out, [&](const std::string& name, std::size_t size_bytes_max) {
+        source.text, path, out,
+        [&](const std::string& name, std::size_t size_bytes_max) {
             const FileRead read = read_beneath(folder, name, size_bytes_max);
             const auto* const bytes = reinterpret_cast<const char*>(read.bytes.data());
             std::string& named = source.named[name];
             named.assign(bytes, bytes + read.bytes.size());
             return NamedFile{named, read.got, read.wanted};
-        });
+        },
+        &source.doubts);
 }
 
 }  // namespace axg

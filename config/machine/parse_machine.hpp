@@ -13,10 +13,12 @@
 namespace axg {
 
 /// As load_machine(), from text. `file` is the name shown in faults.
-/// @param files  how to read a DBC, EDS or DCF file that the text names; without it there is none
+/// @param files   how to read a DBC, EDS or DCF file that the text names; without it there is none
+/// @param doubts  out, if not null: lines for a person to review
 [[nodiscard]] std::vector<ConfigFault> parse_machine(const std::string& text,
                                                      const std::string& file, Machine& out,
-                                                     const NamedFiles& files = {});
+                                                     const NamedFiles& files = {},
+                                                     std::vector<std::string>* doubts = nullptr);
 
 /// The machine that the text describes, as load_machine() read it; nothing is opened.
 [[nodiscard]] std::vector<ConfigFault> parse_machine(const MachineText& source, Machine& out);

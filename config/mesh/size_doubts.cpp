@@ -11,67 +11,42 @@
 
 #include "config/mesh/load_meshes.hpp"
 #include "config/mesh/mesh_faults.hpp"
+#include "config/mesh/surface_box.hpp"
 #include "config/mesh/survey_mesh.hpp"
 
 namespace axg {
 namespace {
 
-struct Box {
-    Vec3d low{}, high{};
-};
-
-/// In mm; `at` maps the triangles to the frame of the box.
-Box box_of(const std::vector<Triangle>& triangles, const Pose& at) {
-    Box box;
-    bool is_first = true;
-    for (const Triangle& triangle : triangles) {
-        for (const Vec3f& corner : {triangle.a, triangle.b, triangle.c}) {
-            const Vec3d p = apply(at, widen(corner));
-            box.low = is_first ? p
-                               : Vec3d{std::min(box.low.x, p.x), std::min(box.low.y, p.y),
-                                       std::min(box.low.z, p.z)};
-            box.high = is_first ? p
-                                : Vec3d{std::max(box.high.x, p.x), std::max(box.high.y, p.y),
-                                        std::max(box.high.z, p.z)};
-            is_first = false;
-        }
-    }
-    return box;
+double longest_side_mm(const SurfaceBox& box) {
+    return longest_side(box.high_mm - box.low_mm);
 }
 
-double longest_side_mm(const Box& box) {
-    const Vec3d size = box.high - box.low;
-    return std::max({size.x, size.y, size.z});
-}
-
-std::string format_size(const Box& box, double scale) {
-    const Vec3d size = box.high - box.low;
+std::string format_size(const SurfaceBox& box, double scale) {
+    const Vec3d size = box.high_mm - box.low_mm;
     return fmt::format("{:.6g} x {:.6g} x {:.6g} mm", size.x * scale, size.y * scale,
                        size.z * scale);
 }
 
-/// The upper one of an even count: of two bodies the larger one is believed.
 double median_side_mm(const MachineMeshes& meshes) {
     std::vector<double> sides;
     for (const Mesh& mesh : meshes.bodies) {
         if (!mesh.triangles.empty()) {
-            sides.push_back(longest_side_mm(box_of(mesh.triangles, {})));
+            sides.push_back(longest_side_mm(box_of(mesh.triangles)));
         }
     }
-    std::sort(sides.begin(), sides.end());
-    return sides.empty() ? 0 : sides[sides.size() / 2];
+    return median_side(sides);
 }
 
 constexpr std::array<LengthUnit, 4> kUnits{LengthUnit::mm, LengthUnit::inch, LengthUnit::m,
                                            LengthUnit::um};
 
-/// Factor of the surface's size if the file were read in `unit`.
 double scale_to(const MeshSource& source, LengthUnit unit) {
-    return length_of(unit) / length_of(source.unit);
+    return scale_between(source.unit, unit);
 }
 
 /// The action of a fault: the unit that fits, the extents in it, and the key to accept the size.
-std::string advice(const MeshSource& source, const Box& box, std::optional<LengthUnit> unit) {
+std::string advice(const MeshSource& source, const SurfaceBox& box,
+                   std::optional<LengthUnit> unit) {
     const std::string insist = "or set size_is_right: true if the surface is that small";
     return unit ? fmt::format("unit: {}, which makes it {}; {}", name_of(*unit),
                               format_size(box, scale_to(source, *unit)), insist)
@@ -104,7 +79,7 @@ void doubt_body(const Body& body, const Mesh& mesh, double median_mm,
     if (source.size_is_right || source.file.empty() || mesh.triangles.empty()) {
         return;
     }
-    const Box box = box_of(mesh.triangles, {});
+    const SurfaceBox box = box_of(mesh.triangles);
     const double side = longest_side_mm(box);
     if (side >= kLeastSideMm && side >= kLeastShareOfMedian * median_mm) {
         return;
@@ -126,8 +101,8 @@ void doubt_tool(const Tool& tool, const Mesh& mesh, std::vector<ConfigFault>& fa
     if (source.size_is_right || mesh.triangles.empty()) {
         return;
     }
-    const Box box = box_of(mesh.triangles, source.turns ? Pose{} : tool.at);
-    const double tip_mm = -box.low.z;
+    const SurfaceBox box = box_of(mesh.triangles, source.turns ? Pose{} : tool.at);
+    const double tip_mm = -box.low_mm.z;
     const bool is_file = !source.file.empty();
     if (tip_fits(tip_mm, tool.length_mm) && !(is_file && longest_side_mm(box) < kLeastSideMm)) {
         return;

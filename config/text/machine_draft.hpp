@@ -30,6 +30,7 @@ struct MachineDraft {
     bool states_permit_samples = false;  // else they follow from `permit`, `ahead` and guard.cap
     std::vector<int> axis_lines{}, body_lines{}, tool_lines{};
     ClearanceLevelDistances usual_clearance_levels{};  // of pairs that state none
+    std::vector<std::string> doubts{};                 // lines for a person to review
     bool surfaces_are_sound = true;                    // no body has an unreadable `tool` key
     bool names_are_sound =
         true;  // else a missing pair would be reported twice: once for its misspelt body

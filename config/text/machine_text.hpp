@@ -4,6 +4,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 namespace axg {
 
@@ -11,6 +12,7 @@ struct MachineText {
     std::string file;  // its name, without the folder
     std::string text;
     std::map<std::string, std::string> named;  // files that the text names: DBC, EDS, DCF
+    std::vector<std::string> doubts{};         // lines for a person to review, found while reading
 };
 
 }  // namespace axg

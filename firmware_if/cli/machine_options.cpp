@@ -49,6 +49,12 @@ int exit_code_of(const MachineOptions& options, const Machine& machine, const Ma
     return is_sound ? kExitClean : kExitUsage;
 }
 
+void print(const std::vector<std::string>& doubts) {
+    for (const std::string& doubt : doubts) {
+        std::fprintf(stderr, "to review: %s\n", doubt.c_str());
+    }
+}
+
 }  // namespace
 
 void add_machine_options(const Command& command, MachineOptions& options) {
@@ -71,7 +77,14 @@ int load(const MachineOptions& options, LoadedMachine& out) {
                 progress.show(share, "proving never-colliding sets");
             }
         });
-    return is_loaded ? exit_code_of(options, out.machine, out.source) : kExitInput;
+    if (!is_loaded) {
+        return kExitInput;
+    }
+    if (!options.lists_doubts) {
+        print(out.source.doubts);
+        print(out.doubts);
+    }
+    return exit_code_of(options, out.machine, out.source);
 }
 
 int load_without_meshes(const MachineOptions& options, Machine& out) {
@@ -86,7 +99,11 @@ int load_without_meshes(const MachineOptions& options, Machine& out) {
     if (!faults.empty() && !is_compiled_name(options.file)) {
         std::fprintf(stderr, "%s", fault_summary(options.file, faults.size()).c_str());
     }
-    return faults.empty() ? exit_code_of(options, out, source) : kExitInput;
+    if (!faults.empty()) {
+        return kExitInput;
+    }
+    print(source.doubts);
+    return exit_code_of(options, out, source);
 }
 
 }  // namespace axg

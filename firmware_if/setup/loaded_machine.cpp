@@ -13,6 +13,7 @@
 
 #include "config/machine/load_machine.hpp"
 #include "config/mesh/cutting_parts.hpp"
+#include "config/mesh/drawing_doubts.hpp"
 #include "config/mesh/simplify_meshes.hpp"
 #include "config/mesh/size_doubts.hpp"
 #include "config/text/fault_list.hpp"
@@ -102,6 +103,7 @@ bool load(const std::string& file, const std::string& mesh_root, LoadedMachine& 
         faults = doubt_sizes(read.machine, read.meshes);
     }
     if (faults.empty()) {
+        read.doubts = doubt_drawings(read.machine, read.meshes);
         part_cutters(read.machine, read.meshes);
         faults = simplify_meshes(read.machine, read.meshes);
     }

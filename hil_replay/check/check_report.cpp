@@ -214,6 +214,9 @@ void report_bodies(CheckReport& report) {
                    surface);
     }
     warn_of_scale(report);
+    for (const auto* doubts : {&report.loaded.source.doubts, &report.loaded.doubts}) {
+        report.warnings.insert(report.warnings.end(), doubts->begin(), doubts->end());
+    }
     for (const std::string& note : report.loaded.meshes.notes) {
         fmt::print(report.words, "  note: {}\n", escaped(note, 400));
     }

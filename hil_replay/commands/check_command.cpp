@@ -132,6 +132,7 @@ void add_check(CommandLine& line) {
     command.set_group("Set up a machine");
     command.set_example("axguard check config/machines/paper-trunnion.yaml");
     add_machine_options(command, options->machine);
+    options->machine.lists_doubts = true;
     command
         .add_option("--engine", options->engine,
                     "check whether this engine can run on this host: cpu, cuda (GPU) or auto "

@@ -12,6 +12,7 @@
 #include "config/init/machine_tree.hpp"
 #include "config/init/write_machine.hpp"
 #include "config/machine/parse_machine.hpp"
+#include "config/mesh/drawing_doubts.hpp"
 #include "config/text/config_fault.hpp"
 #include "config/text/fault_text.hpp"
 #include "config/text/quote_text.hpp"
@@ -168,6 +169,26 @@ bool is_sound(const std::string& text, const InitOptions& options) {
     return faults.empty();
 }
 
+/// The extents of each body in the unit that was passed, one a line, and the doubts about them.
+void show_sizes(const std::vector<RoleGuess>& roles, const std::vector<SurveyedMesh>& meshes,
+                std::FILE* stream) {
+    std::vector<BodySize> sizes;
+    for (const RoleGuess& role : roles) {
+        const MeshSource& source = meshes[role.file].source;
+        const Vec3d size = source.expected_size_mm;
+        fmt::print(stream, "  {:<20} {:.5g} x {:.5g} x {:.5g} mm\n", role.name, size.x, size.y,
+                   size.z);
+        sizes.push_back({source.file, source.unit, role.is_tool ? Vec3d{} : size, role.parent});
+    }
+    const std::vector<std::string> doubts = doubt_units(sizes);
+    for (std::size_t i = 0; i < roles.size(); ++i) {
+        if (!doubts[i].empty()) {
+            fmt::print(stream, "to review: bodies.{}.mesh: {}. Correct unit and size_mm.\n",
+                       roles[i].name, doubts[i]);
+        }
+    }
+}
+
 int init(InitOptions options, const CommandFiles& names) {
     std::vector<std::string> files;
     IniAxes known;
@@ -231,8 +252,10 @@ int init(InitOptions options, const CommandFiles& names) {
         return kExitInternal;
     }
     const std::string root = needs_root ? " --mesh-root " + options.folder : "";
+    std::FILE* const stream = is_stdout(options.out) ? stderr : stdout;
+    show_sizes(roles, meshes, stream);
     fmt::print(
-        is_stdout(options.out) ? stderr : stdout,
+        stream,
         "{}: {} bodies written. Next: edit the lines marked GUESS, then\n  axguard check {}{}\n",
         escaped(options.out, 4096), roles.size(), escaped(options.out, 4096), escaped(root, 4096));
     return kExitClean;

@@ -45,6 +45,41 @@ TEST(MachineDrives, ProcessDataBecomeSignals) {
     EXPECT_EQ(can.signals[6].frame_bytes, 3) << "two of the three entries are active";
 }
 
+// An EDS with the identifier of a node that somebody wrote into it; a DCF is written for its node.
+TEST(MachineDrives, AnotherNodesIdentifierInAnEdsIsDoubted) {
+    const std::string plain = with(kDriveEds, "[DeviceComissioning]\nNodeID=5\n", "");
+    const std::string with_default =
+        with(plain, "ParameterValue = 0x380 + $NodeID", "DefaultValue=$NODEID+0x380");
+    const auto doubts_of = [](const std::string& eds) {
+        Machine machine;
+        std::vector<std::string> doubts;
+        const NamedFiles files = [&eds](const std::string&, std::size_t) {
+            return NamedFile{eds, {}, {}};
+        };
+        EXPECT_TRUE(parse_machine(drive_machine(), "m", machine, files, &doubts).empty());
+        return doubts;
+    };
+    EXPECT_TRUE(doubts_of(with_default).empty());
+    const std::string changed =
+        with(with_default, "$NODEID+0x380", "$NODEID+0x380\nParameterValue=0x38C");
+    ASSERT_EQ(doubts_of(changed).size(), 1U);
+    const std::string doubt = doubts_of(changed)[0];
+    EXPECT_NE(
+        doubt.find("can.drives.C.file: TPDO3 is awaited under ParameterValue 0x38C (drive.dcf:"),
+        std::string::npos)
+        << doubt;
+    EXPECT_NE(
+        doubt.find("); DefaultValue makes it 0x385 for node 5. Delete ParameterValue if it is "
+                   "that of another node."),
+        std::string::npos)
+        << doubt;
+    EXPECT_TRUE(doubts_of(with(changed, "0x38C", "0x385")).empty()) << "the same number";
+    EXPECT_TRUE(doubts_of(with(changed, "0x38C", "$NODEID+0x388")).size() == 1);
+    const std::string dcf =
+        with(changed, "[1800sub1]", "[DeviceComissioning]\nNodeID=5\n[1800sub1]");
+    EXPECT_TRUE(doubts_of(dcf).empty());
+}
+
 TEST(MachineDrives, WithoutAWordSyncDoesNotCountAndTheWindowIsThePeriod) {
     Machine machine;
     const std::string text =

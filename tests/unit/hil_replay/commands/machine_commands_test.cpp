@@ -15,6 +15,7 @@
 #include "core/mesh/stl.hpp"
 #include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/machine_options.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
 #include "hil_replay/commands/commands.hpp"
 #include "tests/support/json_value.hpp"
@@ -367,6 +368,42 @@ TEST_F(Commands, InitWritesEachPartOfATree) {
     EXPECT_FALSE(has(one.err, "left out") || has(one.err, "m.yaml") || has(one.err, "Rename"))
         << one.err;
     EXPECT_FALSE(fs::exists(path("m.yaml")));
+}
+
+// init shows every size; a body in inch among others in mm is listed by check, and printed by every
+// other command that reads the machine.
+TEST_F(Commands, ABodyInInchIsNamedUntilItIsAccepted) {
+    for (const auto& [name, side] :
+         {std::pair{"base.stl", 400.0F}, {"x.stl", 300.0F}, {"y.stl", 280.0F}, {"c.stl", 10.0F}}) {
+        write_mesh(name, box({0, 0, 0}, {side, side, side / 2}));
+    }
+    const Outcome init = axguard({"init", path("meshes"), "-o", path("m.yaml"), "--unit", "mm"});
+    ASSERT_EQ(init.exit_code, kExitClean) << init.err;
+    EXPECT_TRUE(has(init.out, "\n  x                    300 x 300 x 150 mm\n")) << init.out;
+    const std::string doubt =
+        "bodies.c.mesh: meshes/c.stl: 10 mm, 30 times smaller than the median body (300 mm); in "
+        "inch 254 mm.";
+    EXPECT_TRUE(has(init.out, "to review: " + doubt + " Correct unit and size_mm.\n")) << init.out;
+    const Outcome check = axguard({"check", path("m.yaml")});
+    EXPECT_EQ(check.exit_code, kExitClean) << check.err;
+    EXPECT_TRUE(has(check.out, doubt + " Correct unit, or set size_is_right: true.\n"))
+        << check.out;
+    EXPECT_EQ(check.err, "");
+    const auto printed = [this] {
+        testing::internal::CaptureStderr();
+        LoadedMachine loaded;
+        EXPECT_EQ(load(MachineOptions{.file = path("m.yaml"), .mesh_root = ""}, loaded),
+                  kExitClean);
+        std::fflush(stderr);
+        return testing::internal::GetCapturedStderr();
+    };
+    EXPECT_TRUE(has(printed(), "to review: " + path("m.yaml"))) << printed();
+    EXPECT_TRUE(has(printed(), doubt));
+    const std::string accepted =
+        with(read(path("m.yaml")), "  - name: c\n", "  - name: c\n    size_is_right: true\n");
+    std::ofstream(path("m.yaml")) << accepted;
+    EXPECT_EQ(printed(), "");
+    EXPECT_FALSE(has(axguard({"check", path("m.yaml")}).out, "times smaller"));
 }
 
 TEST_F(Commands, InitRefusesAFolderItCannotUse) {
