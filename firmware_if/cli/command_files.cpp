@@ -26,6 +26,12 @@ bool is_apart(const CommandFiles::Named& output, const std::string& input, const
            complain(output, "is the same file as " + name + ". Pass another file name.", messages);
 }
 
+/// "-" is stdin as an input and stdout as an output.
+bool is_apart_from_input(const CommandFiles::Named& output, const std::string& input,
+                         const std::string& name, std::FILE* messages) {
+    return (input == "-" && is_stdout(*output.path)) || is_apart(output, input, name, messages);
+}
+
 }  // namespace
 
 bool are_sound(const CommandFiles& files, std::FILE* messages) {
@@ -42,9 +48,10 @@ bool are_sound(const CommandFiles& files, std::FILE* messages) {
         const std::string fault = output_fault(*output->path);
         is_sound = (fault.empty() || complain(*output, fault, messages)) && is_sound;
         for (const CommandFiles::Named& input : files.inputs) {
-            is_sound = (input.path->empty() ||
-                        is_apart(*output, *input.path, long_name(input.option), messages)) &&
-                       is_sound;
+            is_sound =
+                (input.path->empty() ||
+                 is_apart_from_input(*output, *input.path, long_name(input.option), messages)) &&
+                is_sound;
         }
         for (auto other = files.outputs.begin(); other != output; ++other) {
             is_sound = (other->path->empty() ||
@@ -61,7 +68,8 @@ bool are_apart(const CommandFiles& files, const std::vector<std::string>& inputs
     for (const CommandFiles::Named& output : files.outputs) {
         for (const std::string& input : inputs) {
             are = (output.path->empty() ||
-                   is_apart(output, input, "the input " + escaped(input, 4096), messages)) &&
+                   is_apart_from_input(output, input, "the input " + escaped(input, 4096),
+                                       messages)) &&
                   are;
         }
     }

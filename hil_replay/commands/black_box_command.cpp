@@ -8,7 +8,6 @@
 #include <array>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
 #include <optional>
 #include <string_view>
 
@@ -24,6 +23,7 @@
 #include "hil_replay/replay/replay_csv.hpp"
 #include "hil_replay/replay/why_stop.hpp"
 #include "hil_replay/trace/candump_log.hpp"
+#include "hil_replay/trace/kept_input.hpp"
 
 namespace axg {
 namespace {
@@ -265,9 +265,14 @@ int judge(const BlackBoxArguments& arguments, BlackBoxFile& black_box, const Loa
 }  // namespace
 
 bool is_black_box_file(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
+    std::FILE* const file = open_input(path);
+    if (file == nullptr) {
+        return false;
+    }
     std::array<char, kBlackBoxMagic.size()> bytes{};
-    return file.read(bytes.data(), bytes.size()) &&
+    const std::size_t count = std::fread(bytes.data(), 1, bytes.size(), file);
+    std::fclose(file);
+    return count == bytes.size() &&
            std::memcmp(bytes.data(), kBlackBoxMagic.data(), bytes.size()) == 0;
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // axguard inspect: prints the contents of a recorded bus; needs no guard.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <memory>
 #include <string>
@@ -17,6 +16,7 @@
 #include "hil_replay/commands/commands_json.hpp"
 #include "hil_replay/replay/limit_table.hpp"
 #include "hil_replay/replay/replay_report.hpp"
+#include "hil_replay/trace/kept_input.hpp"
 #include "hil_replay/trace/trace_period.hpp"
 #include "hil_replay/trace/trace_survey.hpp"
 
@@ -117,7 +117,7 @@ int inspect(const InspectArguments& arguments) {
         error.empty() ? open_trace(arguments.trace, options, error) : nullptr;
     if (!trace) {
         fmt::print(stderr, "{}\n", error);
-        const bool is_read = access(arguments.trace.c_str(), R_OK) == 0;
+        const bool is_read = is_readable_input(arguments.trace);
         return !write_json(arguments.json, describe_unread(arguments.trace, error)) ? kExitInternal
                : is_read                                                            ? kExitCan
                                                                                     : kExitInput;
@@ -138,6 +138,9 @@ int inspect(const InspectArguments& arguments) {
                survey.frame_count(), seconds, trace->device(), ids.size());
     if (end.lines_skipped > 0) {
         fmt::print(out, "{} lines skipped, the first: {}\n", end.lines_skipped, end.first_skipped);
+    }
+    if (trace->events() > 0) {
+        fmt::print(out, "{} lines of other events, without a frame\n", trace->events());
     }
     print_ids(out, ids, survey.first_us());
     if (has_machine) {
@@ -171,7 +174,7 @@ void add_inspect(CommandLine& line) {
     command.set_example("axguard inspect trace.log --machine machine.yaml");
     command
         .add_input("TRACE", arguments->trace,
-                   "candump log or Vector ASC file, optionally compressed with gzip")
+                   "candump log or Vector ASC file, optionally compressed with gzip; - reads stdin")
         .required();
     command.add_input(
         "--machine", arguments->machine,

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // axguard replay: a CAN trace against a machine, cycle by cycle, until the permit is withdrawn.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -36,6 +35,7 @@
 #include "hil_replay/replay/replay_run.hpp"
 #include "hil_replay/trace/added_session.hpp"
 #include "hil_replay/trace/candump_log.hpp"
+#include "hil_replay/trace/kept_input.hpp"
 #include "hil_replay/trace/program_lines.hpp"
 #include "hil_replay/trace/trace_period.hpp"
 #include "hil_replay/trace/trace_reader.hpp"
@@ -64,7 +64,7 @@ std::int64_t steady_ns(void*) {
 
 /// A file that was read and is no trace is an invalid trace; one that was not read is a wrong name.
 int exit_code_of_unopened(const std::string& path) {
-    return access(path.c_str(), R_OK) == 0 ? kExitCan : kExitInput;
+    return is_readable_input(path) ? kExitCan : kExitInput;
 }
 
 /// Outputs of each cycle in addition to the verdict.
@@ -392,7 +392,7 @@ void add_replay(CommandLine& line, const ReplayObserver& observer) {
     add_machine_options(command, arguments->machine);
     command
         .add_input("TRACE", arguments->trace,
-                   "candump log, Vector ASC file or black box of axguardd")
+                   "candump log, Vector ASC file or black box of axguardd; - reads stdin")
         .required();
     command
         .add_option(

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "config/text/quote_text.hpp"
+#include "hil_replay/trace/kept_input.hpp"
 
 namespace axg {
 namespace {
@@ -50,7 +51,7 @@ BlackBoxFile::BlackBoxFile(std::string name, std::vector<std::uint8_t> bytes)
 }
 
 BlackBoxFile BlackBoxFile::open(const std::string& path) {
-    const File file(std::fopen(path.c_str(), "rb"), &std::fclose);
+    const File file(open_input(path), &std::fclose);
     BlackBoxFile black_box(path,
                            file ? read(file.get(), kFileBytesMax) : std::vector<std::uint8_t>{});
     if (!file || std::ferror(file.get()) != 0) {

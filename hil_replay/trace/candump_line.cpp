@@ -44,7 +44,9 @@ LineFault parse_time(const char*& at, const char* end, std::int64_t& time_us) no
         return LineFault{"time", rest(begin, stop == end ? end : stop + 1), wanted};
     };
     if (at == end || *at != '(') {
-        return fault("a line that begins with (seconds.fraction), or a candump log at all");
+        LineFault foreign = fault("a line that begins with (seconds.fraction)");
+        foreign.is_skippable = true;
+        return foreign;
     }
     const char* first = ++at;
     std::int64_t seconds = 0;

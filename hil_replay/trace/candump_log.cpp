@@ -33,9 +33,27 @@ class CandumpTrace : private OwnedLines, public TextTrace {
                      "a complete trace; frames are missing here: record it again"};
             return Line::fault;
         }
+        if (line[0] == '\t' && is_behind_error_) {
+            return Line::nothing;  // of candump -e: the error frame above in words
+        }
         fault = parse_candump_line(line, frame, device);
+        is_behind_error_ = !fault && frame.error;
+        if (!has_frame_ && !fault) {
+            has_frame_ = true;
+            constexpr std::string_view kZero = "(000.000000)";  // -ta and -L write ten digits
+            begins_at_zero_ = line.substr(line.find('(')).starts_with(kZero);
+        }
         return fault ? Line::fault : Line::frame;
     }
+
+    [[nodiscard]] std::string_view when_time_decreases() const noexcept override {
+        return begins_at_zero_ ? "a time that does not decrease; candump -td writes differences, "
+                                 "which are no times: record with candump -L or -ta"
+                               : TextTrace::when_time_decreases();
+    }
+
+  private:
+    bool has_frame_ = false, begins_at_zero_ = false, is_behind_error_ = false;
 };
 
 }  // namespace

@@ -14,7 +14,9 @@
 #include <memory>
 
 #include "config/text/fault_text.hpp"
+#include "hil_replay/trace/candump_line.hpp"
 #include "hil_replay/trace/candump_log.hpp"
+#include "hil_replay/trace/kept_input.hpp"
 #include "hil_replay/trace/vector_asc.hpp"
 
 namespace axg {
@@ -45,7 +47,8 @@ bool TextTrace::next(CanFrame& frame) {
         std::string_view device;
         const Line kind = read_line(text, frame, device, fault);
         line_ = lines_.line_number();
-        if (kind == Line::nothing) {
+        if (kind == Line::nothing || kind == Line::event) {
+            events_ += kind == Line::event ? 1 : 0;
             continue;
         }
         if (kind == Line::fault ? complain(fault) : !accept(frame, device)) {
@@ -81,7 +84,11 @@ bool TextTrace::complain(const LineFault& fault) {
     }
     std::string message = name_ + ":" + std::to_string(line_) + ": ";
     message.append(fault.what).append(": ");
-    message.append(fault_text("invalid value", quoted(fault.got), fault.wanted));
+    std::string wanted(fault.wanted);
+    if (fault.is_skippable && !options_.lenient) {
+        wanted += "; pass over such lines with --lenient";
+    }
+    message.append(fault_text("invalid value", quoted(fault.got), wanted));
     (options_.lenient ? first_skipped_ : error_) = std::move(message);
     return true;
 }
@@ -104,7 +111,7 @@ bool TextTrace::accept(const CanFrame& frame, std::string_view device) {
         std::snprintf(text, sizeof text, "%.6f s after %.6f s",
                       static_cast<double>(frame.time_us) * 1e-6,
                       static_cast<double>(last_time_us_) * 1e-6);
-        complain({"time", text, "a time that does not decrease; sort the trace"});
+        complain({"time", text, when_time_decreases()});
         return false;
     }
     last_time_us_ = has_time_ ? std::max(last_time_us_, frame.time_us) : frame.time_us;
@@ -221,7 +228,7 @@ std::FILE* unpack(std::FILE* file, const std::string& path, std::string& error) 
 }  // namespace
 
 std::FILE* open_text(const std::string& path, std::string& error) {
-    std::FILE* file = std::fopen(path.c_str(), "rb");
+    std::FILE* file = open_input(path);
     struct stat status {};
     if (file == nullptr || fstat(fileno(file), &status) != 0) {
         error = path + ": cannot be opened: " + std::strerror(errno) + ". Check the name.";
@@ -234,6 +241,18 @@ std::FILE* open_text(const std::string& path, std::string& error) {
     }
     return file == nullptr || !is_packed(file) ? file : unpack(file, path, error);
 }
+
+namespace {
+
+/// candump without -t or -L: an interface and a frame.
+bool is_without_time(std::string_view line) {
+    CanFrame frame;
+    std::string_view device;
+    const std::string stamped = "(0.000000) " + std::string(line);
+    return !parse_candump_line(stamped, frame, device);
+}
+
+}  // namespace
 
 std::unique_ptr<TraceReader> open_trace(const std::string& path, const TraceOptions& options,
                                         std::string& error) {
@@ -261,8 +280,10 @@ std::unique_ptr<TraceReader> open_trace(const std::string& path, const TraceOpti
         if (kind == '?') {
             error = path + ":" + std::to_string(lines.line_number()) + ": " +
                     fault_text("invalid file", quoted(line),
-                               "a candump log or a Vector ASC file; convert other formats with "
-                               "can_logconvert (Debian: python3-can)");
+                               is_without_time(line)
+                                   ? "a time before each frame; record with candump -L or -ta"
+                                   : "a candump log or a Vector ASC file; convert other formats "
+                                     "with can_logconvert (Debian: python3-can)");
         } else if (kind == 0) {
             error = path + ": " + (lines.error().empty() ? "the trace is empty" : lines.error());
         }

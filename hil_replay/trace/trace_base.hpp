@@ -13,9 +13,10 @@ namespace axg {
 
 /// Why a line was refused. Views point into the line or to literals; empty `what`: it was not.
 struct LineFault {
-    std::string_view what;    // the part of the line: "time", "id"
-    std::string_view got;     // as written
-    std::string_view wanted;  // and what to do, where that is not plain
+    std::string_view what;      // the part of the line: "time", "id"
+    std::string_view got;       // as written
+    std::string_view wanted;    // and what to do, where that is not plain
+    bool is_skippable = false;  // the line is probably no frame: --lenient may pass over it
     [[nodiscard]] explicit operator bool() const noexcept { return !what.empty(); }
 };
 
@@ -36,6 +37,7 @@ class TextTrace : public TraceReader {
     [[nodiscard]] std::uint64_t line() const noexcept final { return line_; }
     [[nodiscard]] std::uint64_t skipped() const noexcept final { return skipped_; }
     [[nodiscard]] std::string first_skipped() const final { return first_skipped_; }
+    [[nodiscard]] std::uint64_t events() const noexcept final { return events_; }
     [[nodiscard]] std::string_view device() const noexcept final { return device_; }
     [[nodiscard]] double share() const noexcept final { return lines_.share(); }
 
@@ -43,10 +45,15 @@ class TextTrace : public TraceReader {
     TextTrace(std::string name, LineSource& lines, const TraceOptions& options)
         : name_(std::move(name)), options_(options), lines_(lines) {}
 
-    enum class Line : std::uint8_t { frame, nothing, fault };
-    /// Reads one line: a frame with its interface, nothing (a comment, a header), or a fault.
+    enum class Line : std::uint8_t { frame, nothing, event, fault };
+    /// Reads one line: a frame with its interface, nothing (a comment, a header), an event that
+    /// has no frame, or a fault.
     [[nodiscard]] virtual Line parse(std::string_view line, CanFrame& frame,
                                      std::string_view& device, LineFault& fault) = 0;
+    /// What a line was expected to have, and what to do, where its time is before the last one's.
+    [[nodiscard]] virtual std::string_view when_time_decreases() const noexcept {
+        return "a time that does not decrease; sort the trace";
+    }
 
   private:
     Line read_line(std::string_view text, CanFrame& frame, std::string_view& device,
@@ -58,7 +65,7 @@ class TextTrace : public TraceReader {
     TraceOptions options_;
     LineSource& lines_;
     std::string error_, first_skipped_, device_;
-    std::uint64_t line_ = 0, skipped_ = 0;
+    std::uint64_t line_ = 0, skipped_ = 0, events_ = 0;
     bool has_time_ = false;
     std::int64_t last_time_us_ = 0;
 };

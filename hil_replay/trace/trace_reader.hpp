@@ -27,6 +27,8 @@ class TraceReader {
     [[nodiscard]] virtual std::uint64_t skipped()
         const noexcept = 0;                                       // lines passed over, lenient only
     [[nodiscard]] virtual std::string first_skipped() const = 0;  // message of the first of them
+    [[nodiscard]] virtual std::uint64_t events()
+        const noexcept = 0;  // lines passed over that have no frame, as bus statistics
     [[nodiscard]] virtual std::string_view device() const noexcept = 0;  // of the last frame
     // The share of the file that was read, 0 to 1; 0: no estimate, as for a packed file.
     [[nodiscard]] virtual double share() const noexcept = 0;

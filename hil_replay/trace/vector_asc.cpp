@@ -256,6 +256,31 @@ TextTrace::Line AscTrace::parse_flexible(Words& words, CanFrame& frame, std::str
     return Line::frame;
 }
 
+/// In English and German; where the channels can do FD, behind CANFD.
+bool is_start(Words words) noexcept {
+    if (words.peek() == "CANFD") {
+        words.next();
+    }
+    return starts_with_any_case(words.rest(), "start of measurement") ||
+           starts_with_any_case(words.rest(), "start der messung");
+}
+
+/// Chip status, bus statistics, system variables, and messages that CANoe's transport layer put
+/// together from frames, which have lines of their own.
+bool is_event_without_frame(Words words) noexcept {
+    std::string_view word = words.next();
+    if (word == "SV:") {
+        return true;
+    }
+    if (word == "CAN" || word == "CANFD") {
+        word = words.next();
+    }
+    std::uint32_t channel = 0;
+    const std::string_view event = words.next();
+    return to_number(word, 10, 255, channel) &&
+           (event.starts_with("Status:") || event.starts_with("Statistic:") || event == "J1939TP");
+}
+
 TextTrace::Line AscTrace::parse(std::string_view line, CanFrame& frame, std::string_view& device,
                                 LineFault& fault) {
     if (parse_header(line, fault)) {
@@ -266,14 +291,17 @@ TextTrace::Line AscTrace::parse(std::string_view line, CanFrame& frame, std::str
     const std::string_view stamp = words.next();
     std::int64_t time_us = 0;
     if (!parse_stamp(stamp, time_us)) {
-        fault = {"line", line, "a header, a comment, or seconds.fraction and an event"};
+        fault = {"line", line, "a header, a comment, or seconds.fraction and an event", true};
         return Line::fault;
     }
     last_us_ = time_us;
     frame.time_us = start_us_ + time_us;
     const std::string_view event = words.peek();
-    if (words.rest() == "Start of measurement") {
+    if (is_start(words)) {
         return Line::nothing;
+    }
+    if (is_event_without_frame(words)) {
+        return Line::event;
     }
     if (base_ == 0) {
         fault = {"header", line, "a line base hex|dec before the first frame"};
@@ -284,7 +312,7 @@ TextTrace::Line AscTrace::parse(std::string_view line, CanFrame& frame, std::str
     }
     std::uint32_t channel = 0;
     if (!to_number(event, 10, 255, channel)) {
-        fault = {"event", words.rest(), "a channel, CANFD or Start of measurement"};
+        fault = {"event", words.rest(), "a channel, CANFD or Start of measurement", true};
         return Line::fault;
     }
     device = words.next();

@@ -11,6 +11,7 @@
 
 #include "firmware_if/cli/exit_codes.hpp"
 #include "tests/support/json_value.hpp"
+#include "tests/support/machine_text.hpp"
 #include "tests/support/replay_fixture.hpp"
 
 namespace axg {
@@ -174,6 +175,28 @@ TEST_F(InspectCommand, PackedMembersAreReadToTheLastByte) {
     EXPECT_NE(shop.err.find("trailing bytes after the gzip data"), std::string::npos) << shop.err;
 }
 
+// A trace is opened several times, with a machine four times; a pipe gives its bytes once.
+TEST_F(InspectCommand, ReadsPipesFromTheirFirstByte) {
+    ASSERT_EQ(run(shop.write("a.log", regular())), kExitClean) << shop.err;
+    const auto wanted = document["ids"];
+    const std::string machine = shop.write("m.yaml", test::kSmallMachine);
+    ASSERT_EQ(shop.run_program("/bin/gzip", "-k a.log"), 0) << shop.err;
+    for (const std::string& input :
+         {std::string("- < a.log"), std::string("/dev/stdin < a.log"), std::string("- < a.log.gz"),
+          std::string("<(cat a.log)"), std::string("<(cat a.log.gz)"),
+          "<(cat a.log) --machine " + machine, "- < <(cat a.log) --machine " + machine}) {
+        const std::string script =
+            std::string("exec '") + AXG_PROGRAM + "' inspect " + input + " --json\n";
+        EXPECT_EQ(shop.run_program("/bin/bash", shop.write("s.sh", script)), kExitClean)
+            << input << shop.err;
+        document = test::Json::parse(shop.out);
+        EXPECT_EQ(document["ids"], wanted) << input;
+    }
+    const std::string script = std::string("printf 'rubbish' | '") + AXG_PROGRAM + "' inspect -\n";
+    EXPECT_EQ(shop.run_program("/bin/bash", shop.write("s.sh", script)), kExitCan);
+    EXPECT_NE(shop.err.find("-:1: invalid file (found \"rubbish\""), std::string::npos) << shop.err;
+}
+
 TEST_F(InspectCommand, WhatIsNoTraceSaysSo) {
     EXPECT_EQ(run("none.log"), kExitInput);
     EXPECT_NE(shop.err.find("cannot be opened"), std::string::npos);
@@ -185,7 +208,7 @@ TEST_F(InspectCommand, WhatIsNoTraceSaysSo) {
     EXPECT_EQ(document["fault"],
               mixed +
                   ":2: time: invalid value (found \"rubbish\", expected a line that begins with "
-                  "(seconds.fraction), or a candump log at all).");
+                  "(seconds.fraction)). Pass over such lines with --lenient.");
     EXPECT_NE(shop.err.find("THE TRACE IS TRUNCATED"), std::string::npos) << shop.err;
     EXPECT_EQ(run(mixed + " --lenient"), kExitClean);
     EXPECT_EQ(document["valid"], true);

@@ -260,6 +260,52 @@ TEST(CandumpReader, BlankLinesAndAByteOrderMarkArePassedOver) {
     EXPECT_EQ(got.frames.size(), 2U);
 }
 
+// candump -e prints what an error frame means below it, a line each.
+TEST(CandumpReader, DetailsOfAnErrorFrameArePassedOver) {
+    const std::string error_frame =
+        " (1700000001.000200)  can1  20000088   [8]  00 00 08 00 00 00 00 00   ERRORFRAME\n"
+        "\tprotocol-violation{{tx-stuff-error}{}}\n\tbus-error\n";
+    const std::string frame = " (1700000001.000300)  can1  2A0   [1]  05\n";
+    const auto got = read_log(error_frame + frame);
+    EXPECT_EQ(got.error, "");
+    ASSERT_EQ(got.frames.size(), 2U);
+    EXPECT_TRUE(got.frames[0].error);
+    // Behind anything else such a line is a fault; the option that the message names reads on.
+    const std::string strange = frame + "\tbus-error\n" + frame;
+    const auto refused = read_log(strange);
+    EXPECT_EQ(refused.frames.size(), 1U);
+    EXPECT_NE(refused.error.find("Pass over such lines with --lenient."), std::string::npos)
+        << refused.error;
+    EXPECT_EQ(read_log(strange, {.lenient = true}).frames.size(), 2U);
+}
+
+// Sorted, differences would look like a log. What helps is another record, or for a log of two
+// queues the sorting that is named there.
+TEST(CandumpReader, ATimeThatDecreasesNamesWhatHelps) {
+    const auto differences =
+        read_log("(000.000000) can1 100#01\n(000.150000) can1 100#02\n(000.149000) can1 100#03\n");
+    EXPECT_NE(differences.error.find("found \"0.149000 s after 0.150000 s\", expected a time that "
+                                     "does not decrease). Candump -td writes differences, which "
+                                     "are no times: record with candump -L or -ta."),
+              std::string::npos)
+        << differences.error;
+    EXPECT_EQ(differences.error.find("ort the trace"), std::string::npos);
+    // The same bus by -L, -ta and -tz.
+    for (const char* const good :
+         {"(1700000001.000000) can1 100#01\n(1700000001.150000) can1 100#02\n"
+          "(1700000001.299000) can1 100#03\n",
+          " (1700000001.000000)  can1  100   [1]  01\n (1700000001.150000)  can1  100   [1]  02\n"
+          " (1700000001.299000)  can1  100   [1]  03\n",
+          " (000.000000)  can1  100   [1]  01\n (000.150000)  can1  100   [1]  02\n"
+          " (000.299000)  can1  100   [1]  03\n"}) {
+        EXPECT_EQ(read_log(good).error, "");
+        EXPECT_EQ(read_log(good).frames.size(), 3U);
+    }
+    const std::string early = line("100#01"), late = "(1547073999.000000) can0 100#02\n";
+    EXPECT_NE(read_log(late + early).error.find("Sort the trace."), std::string::npos);
+    EXPECT_EQ(read_log(early + late).error, "") << "sorted";
+}
+
 class CandumpFile : public testing::Test {
   protected:
     void SetUp() override {
@@ -354,6 +400,12 @@ TEST_F(CandumpFile, WhatIsNoTraceIsRefusedByName) {
         say("a", "hello\n").find("a:1: invalid file (found \"hello\", expected a candump log"),
         std::string::npos);
     EXPECT_NE(say("b", "\n \n").find("b: the trace is empty"), std::string::npos);
+    // candump without an option: no converter can add times.
+    const std::string untimed = say("c", "  can1  2A0   [2]  07 08\n");
+    EXPECT_NE(untimed.find("c:1: invalid file (found \"  can1  2A0   [2]  07 08\", expected a time "
+                           "before each frame). Record with candump -L or -ta."),
+              std::string::npos)
+        << untimed;
     std::string error;
     EXPECT_EQ(open_trace(folder_, {}, error), nullptr);
     EXPECT_NE(error.find("found a folder, expected a trace file"), std::string::npos) << error;

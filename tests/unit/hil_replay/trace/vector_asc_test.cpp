@@ -142,7 +142,9 @@ TEST(AscReader, EveryRefusalNamesFileAndLine) {
         {"2.5 1 800 Rx d 1 01", "t.asc:7: id: invalid value (found \"800\""},
         {"2.5 1 20000000x Rx d 1 01", "t.asc:7: id: invalid value (found \"20000000x\""},
         {"2.5 1 x Rx d 1 01", "t.asc:7: id: invalid value (found \"x\""},
-        {"2.5 Marker 3", "t.asc:7: event: invalid value (found \"Marker 3\""},
+        {"2.5 Marker 3",
+         "t.asc:7: event: invalid value (found \"Marker 3\", expected a channel, CANFD or Start of "
+         "measurement). Pass over such lines with --lenient."},
         {"2 1 123 Rx d 1 01", "t.asc:7: line: invalid value (found \"2 1 123 Rx"},
         {"hello", "t.asc:7: line: invalid value (found \"hello\""},
         {"2.5 CANFD 1 Rx 123 0 0 9 8 1 2 3 4 5 6 7 8", "t.asc:7: CANFD"},
@@ -157,6 +159,45 @@ TEST(AscReader, EveryRefusalNamesFileAndLine) {
     std::string error;
     EXPECT_TRUE(read_asc("1.0 1 123 Rx d 0\n", error).empty());
     EXPECT_NE(error.find("t.asc:1: header"), std::string::npos);
+}
+
+// As CANoe begins a measurement, in English and German, on channels with and without FD.
+TEST(AscReader, AMeasurementBeginsInTwoLanguages) {
+    for (const char* const start : {"Start of measurement", "CANFD   Start of measurement",
+                                    "Start der Messung", "CANFD Start der Messung"}) {
+        std::string error;
+        const auto frames = read_asc(
+            "date Mon Mai 6 08:09:10 am 2024\nbase hex  timestamps "
+            "absolute\n   0.000000 " +
+                std::string(start) + "\n 0.5 1 1A0 Rx d 1 07\n",
+            error);
+        EXPECT_EQ(error, "") << start;
+        EXPECT_EQ(frames.size(), 1U) << start;
+    }
+}
+
+TEST(AscReader, InternalEventsHaveNoFrameAndAreCounted) {
+    const std::string text = kHeader +
+                             " 0.1 CAN 2 Status:chip status error active\n"
+                             " 0.2 2  Statistic: D 12 R 0 XD 0 XR 0 E 0 O 0 B 1.50%\n"
+                             " 0.3 SV: 1 0 1 ::Panel::Lamp 1.000000\n"
+                             " 0.4 2 321 Rx d 2 0A 0B\n"
+                             " 0.5 2  J1939TP EECx 3 2 0 - Rx d 9 * 00\n"
+                             " 0.6 CANFD 2 Status:chip status error passive\n";
+    const auto reader = read_asc("t.asc", text, TraceOptions{});
+    CanFrame frame;
+    ASSERT_TRUE(reader->next(frame)) << reader->error();
+    EXPECT_EQ(frame.id, 0x321U);
+    EXPECT_FALSE(reader->next(frame));
+    EXPECT_EQ(reader->error(), "");
+    EXPECT_EQ(reader->events(), 5U);
+    EXPECT_EQ(reader->skipped(), 0U) << "nothing is lost";
+    // Another event is refused, and read over by the option that the message names.
+    std::string error;
+    const std::string other = kHeader + "0.1 Marker\n0.2 1 123 Rx d 0\n";
+    EXPECT_TRUE(read_asc(other, error).empty());
+    EXPECT_NE(error.find("--lenient"), std::string::npos) << error;
+    EXPECT_EQ(read_asc(other, error, {.lenient = true}).size(), 1U);
 }
 
 TEST(AscReader, ARequestToSendIsNoFrame) {
