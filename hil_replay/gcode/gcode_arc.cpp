@@ -6,12 +6,15 @@
 #include <cstdio>
 
 #include "core/base/sincos.hpp"
+#include "hil_replay/gcode/gcode_state.hpp"
 
 namespace axg {
 namespace {
 
 constexpr double kTwoPi = 2.0 * kPi;
-constexpr double kAngleTiny = 1e-12;  // rad: a start and end on one ray are a full turn
+// LinuxCNC's kSamePlaceMm is in the machine's unit: between that of the mm and that of the inch,
+// rounded up, the answer depends on the unit and on rounding.
+constexpr double kApartMm = 1e-6;
 constexpr double kRadiusMmMin = 1e-6;
 constexpr double kRadiusMmMax = 1e6;
 
@@ -48,6 +51,38 @@ bool center_from_radius(const ArcWords& words, double tolerance, ArcShape& shape
     return true;
 }
 
+/// The signed angle from start to end: a full turn where both are one place. Sets the fault where
+/// rounding would decide between a full turn and nothing.
+void find_sweep(const ArcWords& words, ArcShape& shape) {
+    // Of two nearly equal vectors: their difference has the digits that their product would lose.
+    const auto way = [](double from, double to) {
+        return std::abs(to - from) < kSamePlaceMm / 10 ? 0.0 : to - from;
+    };
+    const double way_first = way(words.start_first, words.end_first);
+    const double way_second = way(words.start_second, words.end_second);
+    const double start_first = words.start_first - shape.center_first;
+    const double start_second = words.start_second - shape.center_second;
+    const double cross = start_first * way_second - start_second * way_first;
+    const double dot = start_first * (start_first + way_first) +  //
+                       start_second * (start_second + way_second);
+    const double apart_mm = std::hypot(way_first, way_second);
+    const double across_mm = std::abs(cross) / std::max(shape.radius_start, shape.radius_end);
+    double sweep = apart_mm < kSamePlaceMm ? 0.0 : std::atan2(cross, dot);
+    if (sweep != 0 && dot > 0 && across_mm < kApartMm) {
+        shape.fault = print(
+            "start and end are %.2g mm apart, %.2g mm across the radius: rounding would decide "
+            "between a turn and none; leave the end out for a turn",
+            apart_mm, across_mm);
+        return;
+    }
+    if (words.is_clockwise) {
+        sweep = sweep >= 0 ? sweep - kTwoPi : sweep;
+    } else {
+        sweep = sweep <= 0 ? sweep + kTwoPi : sweep;
+    }
+    shape.sweep_rad = sweep + (words.is_clockwise ? -1 : 1) * kTwoPi * (words.turns - 1);
+}
+
 }  // namespace
 
 ArcShape solve_arc(const ArcWords& words) {
@@ -64,10 +99,9 @@ ArcShape solve_arc(const ArcWords& words) {
     }
     const double start_first = words.start_first - shape.center_first;
     const double start_second = words.start_second - shape.center_second;
-    const double end_first = words.end_first - shape.center_first;
-    const double end_second = words.end_second - shape.center_second;
     shape.radius_start = std::hypot(start_first, start_second);
-    shape.radius_end = std::hypot(end_first, end_second);
+    shape.radius_end =
+        std::hypot(words.end_first - shape.center_first, words.end_second - shape.center_second);
     const double error = std::abs(shape.radius_start - shape.radius_end);
     const double larger = std::max(shape.radius_start, shape.radius_end);
     if (std::min(shape.radius_start, shape.radius_end) < kRadiusMmMin || larger > kRadiusMmMax) {
@@ -83,14 +117,7 @@ ArcShape solve_arc(const ArcWords& words) {
         return shape;
     }
     shape.start_rad = std::atan2(start_second, start_first);
-    double sweep = std::atan2(start_first * end_second - start_second * end_first,
-                              start_first * end_first + start_second * end_second);
-    if (words.is_clockwise) {
-        sweep = sweep > -kAngleTiny ? sweep - kTwoPi : sweep;
-    } else {
-        sweep = sweep < kAngleTiny ? sweep + kTwoPi : sweep;
-    }
-    shape.sweep_rad = sweep + (words.is_clockwise ? -1 : 1) * kTwoPi * (words.turns - 1);
+    find_sweep(words, shape);
     return shape;
 }
 

@@ -72,7 +72,9 @@ class GcodeInterpreter {
     /// The present axis positions in the coordinates of `position`.
     [[nodiscard]] AxisPositions standing_at() const;
     [[nodiscard]] Move new_move(MoveKind kind) const;
-    void append(const Move& next);
+    void append(Move next);
+    /// Gives axes that would move by rounding only the position that they have.
+    void settle(AxisPositions& target) const;
     /// Adds a move to the program; with too many moves adds a fault and ends the program instead.
     void push(const Move& next);
     [[nodiscard]] double scale() const { return state_.is_inch ? 25.4 : 1.0; }  // mm per unit

@@ -112,12 +112,30 @@ bool GcodeInterpreter::set_target(AxisPositions& target) {
             target[index] = value + offset_of(index);
         }
         if (options_.takes_short_way && !state_.is_incremental && machine_.axes[index].unlimited) {
-            constexpr double kTurnTiny = 1e-12;  // rad: a word whole turns away is no move
             const double way = std::remainder(target[index] - state_.position[index], 2 * kPi);
-            target[index] = state_.position[index] + (std::abs(way) < kTurnTiny ? 0.0 : way);
+            if (kPi - std::abs(way) < kSamePlaceRad) {
+                fault(std::string(1, letter),
+                      "half a turn: the shortest way is up as well as down; write a position "
+                      "between, or pass --rotary programmed");
+                is_good = false;
+            }
+            target[index] = state_.position[index] + way;
         }
     }
+    if (state_.motion != 20 && state_.motion != 30) {  // an arc judges its ends together
+        settle(target);
+    }
     return is_good;
+}
+
+void GcodeInterpreter::settle(AxisPositions& target) const {
+    const AxisPositions from = standing_at();
+    for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
+        const bool is_rotary = machine_.axes[i].kind == AxisKind::rotary;
+        if (std::abs(target[i] - from[i]) < (is_rotary ? kSamePlaceRad : kSamePlaceMm)) {
+            target[i] = from[i];
+        }
+    }
 }
 
 std::uint32_t GcodeInterpreter::named_axis(char letter) {
@@ -290,7 +308,8 @@ Move GcodeInterpreter::new_move(MoveKind kind) const {
     return next;
 }
 
-void GcodeInterpreter::append(const Move& next) {
+void GcodeInterpreter::append(Move next) {
+    settle(next.target);
     travel_.check(machine_, result_.program, standing_at(), next, result_.faults);
     const bool is_still = next.kind == MoveKind::line && next.target == standing_at();
     state_.position = next.target;

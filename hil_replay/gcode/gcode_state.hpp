@@ -7,9 +7,14 @@
 #include <cstdint>
 #include <optional>
 
+#include "core/base/sincos.hpp"
 #include "hil_replay/gcode/gcode_reader.hpp"
 
 namespace axg {
+
+// LinuxCNC 2.9, posemath.h, CART_FUZZ: an axis that moves less, mm or degrees, does not move, and
+// an arc with nearer ends is a full turn. Two sums for one place differ by less.
+inline constexpr double kSamePlaceMm = 1e-8, kSamePlaceRad = 1e-8 * kPi / 180;
 
 /// Words of a canned cycle that apply to the next one of its kind, in units of the program. The
 /// height of G98 is the height before the first cycle of a row.

@@ -3,24 +3,12 @@
 // the words of LinuxCNC's switchable kinematics, G43.4 and G49 those of Fanuc.
 // Source: LinuxCNC "G-codes" and "Switchable Kinematics"; docs/reference/gcode.md.
 #include <algorithm>
-#include <cmath>
 
 #include "hil_replay/gcode/gcode_interpreter.hpp"
 
 namespace axg {
 
 using enum ModalGroup;
-
-namespace {
-
-/// Whether both are equal except for rounding; mm or rad.
-bool is_near(const AxisPositions& a, const AxisPositions& b) {
-    constexpr double kTiny = 1e-9;
-    return std::equal(a.begin(), a.end(), b.begin(),
-                      [](double one, double other) { return std::abs(one - other) < kTiny; });
-}
-
-}  // namespace
 
 void GcodeInterpreter::set_tool_length() {
     const std::int32_t code = block_->code(tool_length);
@@ -119,9 +107,13 @@ void GcodeInterpreter::change_coordinates(const AxisPositions& offset, bool is_c
         state_.position = tip_control_->commanded_at(state_.position);
     }
     push(new_move(MoveKind::coordinates));
-    if (was_controlled && is_controlled && !is_near(programmed, state_.position)) {
+    if (was_controlled && is_controlled) {
         state_.standing_at = state_.position;
         state_.position = programmed;  // no word changed the programmed position of the tip
+        settle(state_.position);
+        if (state_.position == *state_.standing_at) {
+            state_.standing_at.reset();
+        }
     }
 }
 

@@ -147,16 +147,15 @@ AxisPositions TipControl::commanded_at(const AxisPositions& axes) const noexcept
         return point;
     };
     const Vec3d tip = placed(move(tool_, axes, tip_mm_), tip_axes_);
-    // The part's frame is rigid: four of its points determine all others.
-    const Vec3d origin = placed(move(part_, axes, nose_mm_), tip_axes_);
+    // The part's frame is rigid: four of its points determine all others. X Y Z shift them alike:
+    // differences without them keep their digits far from zero too.
+    const Moved<double> nose = move(part_, axes, nose_mm_);
     Eigen::Matrix3d frame;
     for (int k = 0; k < 3; ++k) {
-        frame.col(k) =
-            to_eigen(placed(move(part_, axes, nose_mm_ + directions_[static_cast<std::size_t>(k)]),
-                            tip_axes_) -
-                     origin);
+        const Vec3d ahead = nose_mm_ + directions_[static_cast<std::size_t>(k)];
+        frame.col(k) = to_eigen(move(part_, axes, ahead).point - nose.point);
     }
-    const Eigen::Vector3d along = frame.fullPivLu().solve(to_eigen(tip - origin));
+    const Eigen::Vector3d along = frame.fullPivLu().solve(to_eigen(tip - placed(nose, tip_axes_)));
     AxisPositions commanded = axes;
     for (std::size_t k = 0; k < 3; ++k) {
         commanded[tip_axes_[k]] = along[static_cast<Eigen::Index>(k)] + offset_mm_[k];

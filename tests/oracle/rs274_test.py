@@ -5,6 +5,7 @@ same programs are accepted, and their canonical motions are equal to the 1e-4 th
 
     rs274_test.py PRINT_MOVES GCODE_FOLDER
 """
+import ctypes
 import math
 import os
 import pathlib
@@ -255,6 +256,60 @@ def tip_program(rng):
     return "\n".join(lines + ["M2", ""])
 
 
+class PmCircle(ctypes.Structure):
+    """posemath.h of LinuxCNC: centre, normal, three vectors, then these."""
+    _fields_ = [("vectors", ctypes.c_double * 15), ("radius", ctypes.c_double),
+                ("angle", ctypes.c_double), ("spiral", ctypes.c_double)]
+
+
+def sweep_of_linuxcnc(posemath, start, end, centre, is_clockwise):
+    """The angle that its motion controller gives an arc of one turn at most."""
+    points = [(ctypes.c_double * 3)(*point, 0.0) for point in (start, end, centre)]
+    circle, normal = PmCircle(), (ctypes.c_double * 3)(0, 0, 1)
+    posemath.pmCircleInit(ctypes.byref(circle), *(ctypes.byref(point) for point in points),
+                          ctypes.byref(normal), -1 if is_clockwise else 0)
+    return circle.angle
+
+
+def compare_turns(print_moves, program, rng, count):
+    """Arcs with ends from 1e-12 to 1 mm apart: a turn where its motion controller makes one, or a
+    refusal where an inch machine would have another answer. Returns the faults."""
+    try:
+        posemath = ctypes.CDLL("libposemath.so.0")
+    except OSError:
+        print("skipped: the turns (no libposemath.so.0)")
+        return []
+    faults, refused = [], 0
+    for _ in range(count):
+        radius, from_rad = 10 ** rng.uniform(-1, 2), rng.uniform(0, 6.3)
+        start = [round(rng.uniform(-100, 100), 3) for _ in range(2)]
+        to_centre = [round(-radius * math.cos(from_rad), 4), round(-radius * math.sin(from_rad), 4)]
+        centre = [a + b for a, b in zip(start, to_centre)]
+        way = 10 ** rng.uniform(-12, 0) * rng.choice((1, -1)) / math.hypot(*to_centre)
+        out = [-v for v in to_centre]
+        end = [round(centre[0] + out[0] * math.cos(way) - out[1] * math.sin(way), 13),
+               round(centre[1] + out[0] * math.sin(way) + out[1] * math.cos(way), 13)]
+        is_clockwise = rng.random() < 0.5
+        text = (f"G21 G90 G0 X{start[0]:.3f} Y{start[1]:.3f}\nG{2 if is_clockwise else 3} "
+                f"X{end[0]:.13f} Y{end[1]:.13f} I{to_centre[0]:.4f} J{to_centre[1]:.4f} F9\nM2\n")
+        pathlib.Path(program).write_text(text, encoding="ascii")
+        done = subprocess.run([print_moves, program], stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, text=True, check=False)
+        theirs = sweep_of_linuxcnc(posemath, start, end, centre, is_clockwise)
+        apart = math.hypot(end[0] - start[0], end[1] - start[1])
+        if done.returncode != 0:
+            refused += 1
+            is_right = 0.9e-8 < apart < 1.1e-6
+        else:
+            ours = abs(float(done.stdout.split()[-1]))
+            is_right = (ours > 6) == (theirs > 6) if apart < 1e-4 else abs(ours - theirs) < 1e-4
+        if not is_right:
+            faults.append(f"arc with ends {apart:.3g} mm apart: LinuxCNC {theirs}, ours "
+                          f"{done.stdout or done.stderr}\n{text}")
+    print(f"{count} arcs with near ends, {refused} refused, {len(faults)} unlike LinuxCNC's")
+    return faults
+
+
 def main():
     print_moves, gcode = sys.argv[1], pathlib.Path(sys.argv[2])
     if shutil.which("rs274") is None:
@@ -293,6 +348,7 @@ def main():
                 print(text)
                 break
         random_accepted = accepted
+        faults += compare_turns(print_moves, program, rng, count)
         pathlib.Path(folder, TOOLS).write_text(
             "".join(f"T{n} P{n} Z{z / INCH:.9f}\n" for n, z in TIP_TOOLS.items()), encoding="ascii")
         for i in range(count):

@@ -179,6 +179,42 @@ TEST(GcodeArcs, TheDialectsToleranceHasTwoSides) {
     EXPECT_NE(fault_of("G2 I0 F9\n").find("not a circle"), std::string::npos);
 }
 
+// Two ways to one place give sums that differ by rounding: a full turn still, on either side of it.
+TEST(GcodeArcs, EndsAtOnePlaceAreATurnHoweverTheyWereReached) {
+    for (const char* const step : {"0.1", "-0.1", "0.3", "-0.7"}) {
+        for (const char* const word : {"G2", "G3"}) {
+            const std::string end = std::to_string(300 * std::stod(step));
+            const Program program =
+                program_of("G0 X0 Y0\nG91\no1 repeat [300]\nX" + std::string(step) +
+                           "\no1 endrepeat\nG90\n" + word + " X" + end + " Y0 I0 J4 F100\n");
+            EXPECT_NEAR(std::abs(program.moves.back().arc.sweep_rad), 2 * kPi, 1e-9)
+                << step << " " << word;
+        }
+    }
+    const Program by_machine = program_of(
+        "G10 L2 P1 X-183.424 Y270.963\nG53 G0 X-107.067 Y233.22\n"
+        "G3 X76.357 Y-37.743 I.092 J.039 F9\n");
+    EXPECT_NEAR(by_machine.moves.back().arc.sweep_rad, 2 * kPi, 1e-9);
+    // LinuxCNC's 1e-8 is of a mm or of an inch: between them, and on one ray, nothing is certain.
+    EXPECT_NEAR(program_of("G3 X.000000009 I5 F9\n").moves[0].arc.sweep_rad, 2 * kPi, 1e-9);
+    EXPECT_NE(fault_of("G3 Y-.000000011 I5 F9\n").find("rounding would decide"), std::string::npos);
+    EXPECT_NE(fault_of("G3 Y.0000009 I5 F9\n").find("rounding would decide"), std::string::npos);
+    EXPECT_LT(program_of("G3 Y-.0000011 I5 F9\n").moves[0].arc.sweep_rad, 1e-6);
+    EXPECT_GT(program_of("G3 Y.0000011 I5 F9\n").moves[0].arc.sweep_rad, 6.28);
+    EXPECT_NEAR(program_of("G3 X.003 I5 F9\n").moves[0].arc.sweep_rad, 2 * kPi, 1e-9)
+        << "a spiral of one turn";
+    EXPECT_NE(fault_of("G3 X.003 Y.0000005 I5 F9\n").find("rounding would decide"),
+              std::string::npos);
+}
+
+TEST(GcodeFeed, AnAxisThatMovesByRoundingOnlyDoesNotMove) {
+    const Program program =
+        program_of("G20 G94 G10 L2 P1 X-3.424\nG53 G0 X-7.067\nG1 X-3.643 C90 F100\nX-3.643\n");
+    ASSERT_EQ(program.moves.size(), 2U) << "the last line goes nowhere";
+    EXPECT_EQ(program.moves[1].target[kX], program.moves[0].target[kX]);
+    EXPECT_DOUBLE_EQ(program.moves[1].feed, 100) << "degrees: only C moves";
+}
+
 TEST(GcodeTravel, LeavingItNamesLineAxisValueAndLimit) {
     EXPECT_NE(fault_of("G0 X300\nX300.001\n")
                   .find("2: X: out of travel: goes to 300.001 mm, the upper end is 300 mm"),
@@ -344,6 +380,7 @@ TEST(GcodeRotary, EndlessAxesGoTheProgrammedWayOrTheShortOne) {
     EXPECT_EQ(program_of("G0 C10\nC370\nC-350\n", options).moves.size(), 1U) << "it is there";
     EXPECT_NEAR(end_of("G0 A-100\n", options)[kA] / kTestRadPerDegree, -100, 1e-9)
         << "an axis with ends goes between them";
+    EXPECT_NE(fault_of("G0 C90\nC-90\n", options).find("C: half a turn: "), std::string::npos);
     options.work_offsets[0][kC] = 90 * kTestRadPerDegree;
     EXPECT_NEAR(end_of("G0 C180\n", options)[kC] / kTestRadPerDegree, -90, 1e-9);
 }
