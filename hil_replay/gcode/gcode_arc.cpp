@@ -15,8 +15,12 @@ constexpr double kTwoPi = 2.0 * kPi;
 // LinuxCNC's kSamePlaceMm is in the machine's unit: between that of the mm and that of the inch,
 // rounded up, the answer depends on the unit and on rounding.
 constexpr double kApartMm = 1e-6;
-constexpr double kRadiusMmMin = 1e-6;
+constexpr double kChordMmMin = 1e-6;
+// LinuxCNC 2.9, interp_internal.hh, RADIUS_TOLERANCE_MM: a smaller radius is none, and R may be too
+// small by it.
+constexpr double kRadiusMmMin = 0.00127;
 constexpr double kRadiusMmMax = 1e6;
+constexpr double kRelativeTolerance = 0.001, kSpiralFactor = 100;
 
 std::string print(const char* format, double a, double b) {
     char text[160];
@@ -26,16 +30,16 @@ std::string print(const char* format, double a, double b) {
 
 /// R form: computes the centre on the chord's bisector, on the side that gives the short arc, or
 /// for a negative R the long arc.
-bool center_from_radius(const ArcWords& words, double tolerance, ArcShape& shape) {
+bool center_from_radius(const ArcWords& words, ArcShape& shape) {
     const double chord_first = words.end_first - words.start_first;
     const double chord_second = words.end_second - words.start_second;
     const double half = std::hypot(chord_first, chord_second) / 2;
     const double radius = std::abs(words.radius);
-    if (half < kRadiusMmMin) {
+    if (half < kChordMmMin) {
         shape.fault = "a full circle has no R form; give the centre with I J K";
         return false;
     }
-    if (half - radius > tolerance) {
+    if (half - radius > kRadiusMmMin) {
         shape.fault =
             print("radius %.6g mm is too small to reach the end point (expected %.6g or more)",
                   radius, half);
@@ -87,10 +91,8 @@ void find_sweep(const ArcWords& words, ArcShape& shape) {
 
 ArcShape solve_arc(const ArcWords& words) {
     ArcShape shape;
-    const double unit = words.is_inch ? 25.4 / 10.0 : 1.0;  // 0.0005 in is a tenth of 0.005 unit
-    const double tolerance = 0.005 * unit;
     if (words.has_radius) {
-        if (!center_from_radius(words, tolerance, shape)) {
+        if (!center_from_radius(words, shape)) {
             return shape;
         }
     } else {
@@ -110,10 +112,13 @@ ArcShape solve_arc(const ArcWords& words) {
                   shape.radius_start, shape.radius_end);
         return shape;
     }
-    if (error > 100 * tolerance || (error > tolerance && error > 0.001 * larger)) {
+    const double tolerance_mm = std::clamp(kRelativeTolerance * larger, words.tolerance_mm,
+                                           kSpiralFactor * words.tolerance_mm);
+    if (error > tolerance_mm) {
         shape.fault = print(
-            "does not close: radius %.6g mm at the start, %.6g at the end; check I J K and the end",
-            shape.radius_start, shape.radius_end);
+            "does not close: the radius at the end differs by %.4g mm, the tolerance is %.4g mm; "
+            "check I J K and the end",
+            error, tolerance_mm);
         return shape;
     }
     shape.start_rad = std::atan2(start_second, start_first);

@@ -7,6 +7,11 @@
 
 namespace axg {
 
+// LinuxCNC 2.9, interp_internal.hh, CENTER_ARC_RADIUS_TOLERANCE_MM and _INCH: what centres and ends
+// rounded to 0.01 mm or 0.001 in cause.
+inline constexpr double kArcToleranceMm = 0.028284271247461901;
+inline constexpr double kArcToleranceInch = 0.0028284271247461901;
+
 /// In the plane's own two coordinates, mm. Exactly one of the two forms is given.
 struct ArcWords {
     double start_first = 0, start_second = 0;
@@ -16,7 +21,7 @@ struct ArcWords {
     double center_first = 0, center_second = 0;  // IJK form, absolute
     bool is_clockwise = false;
     int turns = 1;
-    bool is_inch = false;  // the tolerance follows the program's unit
+    double tolerance_mm = kArcToleranceMm;  // of the radii, by the program's unit
 };
 
 struct ArcShape {
@@ -26,9 +31,8 @@ struct ArcShape {
     std::string fault;  // empty: usable
 };
 
-/// Source of the tolerances: LinuxCNC "G2, G3 Arc Move": end radius off by more than 0.5 mm (0.05
-/// in), or by more than 0.005 mm (0.0005 in) and 0.1 % of the radius, is an error; R may be too
-/// short by 0.005 mm (0.0005 in).
+/// Source of the rules: LinuxCNC 2.9, interp_arc.cc. Radii that differ by more than 100 times the
+/// tolerance, or by more than it and by 0.1 %, are an error; R may be too short by 0.00127 mm.
 [[nodiscard]] ArcShape solve_arc(const ArcWords& words);
 
 }  // namespace axg

@@ -237,7 +237,7 @@ bool GcodeInterpreter::set_arc(Move& next) {
     words.center_first = arc_center(plane_letters.center_first, plane_letters.first);
     words.center_second = arc_center(plane_letters.center_second, plane_letters.second);
     words.is_clockwise = state_.motion == 20;
-    words.is_inch = state_.is_inch;
+    words.tolerance_mm = state_.is_inch ? kArcToleranceInch * scale() : kArcToleranceMm;
     const double turns = block_->value('P', 1);
     if (turns != std::floor(turns) || turns < 1 || turns > 10000) {
         fault(word, print("P: found %.6g, expected an integer number of turns from 1", turns));

@@ -256,6 +256,19 @@ def tip_program(rng):
     return "\n".join(lines + ["M2", ""])
 
 
+def rounded_arc(rng):
+    """One arc whose centre and end are rounded: whether it closes is the question."""
+    is_inch, digits = rng.random() < 0.5, rng.choice((2, 2, 3))
+    radius, turned = 10 ** rng.uniform(-1.5, 4), [rng.uniform(0, 6.3) for _ in range(2)]
+    off = radius * 10 ** rng.uniform(-5, -2)
+    start, end = [[size * math.cos(angle), size * math.sin(angle)]
+                  for size, angle in zip((radius, radius + off), turned)]
+    words = [round(v, digits) for v in (*start, *end)]
+    x, y = words[:2]
+    return (f"G{20 if is_inch else 21} G90 F9\nG0 X{x} Y{y}\nG{rng.choice((2, 3))} X{words[2]} "
+            f"Y{words[3]} I{-x} J{-y}\nM2\n")
+
+
 class PmCircle(ctypes.Structure):
     """posemath.h of LinuxCNC: centre, normal, three vectors, then these."""
     _fields_ = [("vectors", ctypes.c_double * 15), ("radius", ctypes.c_double),
@@ -337,8 +350,8 @@ def main():
                 faults.append(f"{name}: {found}")
             return theirs, ours, why
 
-        for i in range(count):
-            text = random_program(rng)
+        for i in range(2 * count):
+            text = random_program(rng) if i < count else rounded_arc(rng)
             pathlib.Path(program).write_text(text, encoding="ascii")
             theirs, ours, why = compare(f"random program {i}")
             if (theirs is None) != (ours is None):

@@ -157,17 +157,26 @@ TEST(GcodeArcs, PlanesTurnTheRightHandedWay) {
 }
 
 TEST(GcodeArcs, TheDialectsToleranceHasTwoSides) {
-    // Radius 10: off by 0.005 mm is within the absolute bound, 0.011 within neither it nor 0.1 %.
-    EXPECT_EQ(faults_of(read("G0 X10\nG3 X0 Y10.004 I-10 F9\n")), "");
-    EXPECT_EQ(faults_of(read("G0 X10\nG3 X0 Y10.009 I-10 F9\n")), "") << "0.09 % of the radius";
-    EXPECT_NE(fault_of("G0 X10\nG3 X0 Y10.011 I-10 F9\n").find("G3: does not close"),
+    // 0.02828 mm or 0.002828 in, or 0.1 % of the radius from 28.3 mm on.
+    EXPECT_EQ(faults_of(read("G0 X10\nG3 X0 Y10.0282 I-10 F9\n")), "");
+    EXPECT_NE(fault_of("G0 X10\nG3 X0 Y10.0284 I-10 F9\n")
+                  .find("G3: does not close: the radius at the end differs by 0.0284 mm, the "
+                        "tolerance is 0.02828 mm; check I J K and the end"),
               std::string::npos);
-    // Radius 290: 0.1 % would be 0.29 mm, still below 0.5.
-    EXPECT_EQ(faults_of(read("G0 X290\nG3 X0 Y290.28 I-290 F9\n")), "");
-    EXPECT_NE(fault_of("G0 X290\nG3 X0 Y290.3 I-290 F9\n").find("does not close"),
+    EXPECT_EQ(faults_of(read("G0 X40\nG3 X0 Y40.04 I-40 F9\n")), "") << "0.1 % of the radius";
+    EXPECT_NE(fault_of("G0 X40\nG3 X0 Y40.0402 I-40 F9\n").find("tolerance is 0.04004 mm"),
               std::string::npos);
-    EXPECT_NE(fault_of("G3 X20 R9.99 F9\n").find("too small to reach"), std::string::npos);
-    EXPECT_EQ(faults_of(read("G3 X20 Y-0.1 R9.997 F9\n")), "");
+    EXPECT_EQ(faults_of(read("G20 G0 X1\nG3 X0 Y1.00282 I-1 F9\n")), "");
+    EXPECT_NE(fault_of("G20 G0 X1\nG3 X0 Y1.00284 I-1 F9\n").find("does not close"),
+              std::string::npos);
+    // Three decimals of an inch, as CAM systems write: every end is off by 0.0007 in at most.
+    EXPECT_EQ(faults_of(read("G20 G0 X.5 Y0 F9\nG3 X.354 Y.354 I-.5 J0\nX-.483 Y.129 I-.354 "
+                             "J-.354\nX.5 Y0 I.483 J-.129\n")),
+              "");
+    EXPECT_EQ(faults_of(read("G3 I.0013 F9\n")), "");
+    EXPECT_NE(fault_of("G3 I.00126 F9\n").find("not a circle"), std::string::npos);
+    EXPECT_NE(fault_of("G3 X20 R9.9986 F9\n").find("too small to reach"), std::string::npos);
+    EXPECT_EQ(faults_of(read("G3 X20 R9.9988 F9\n")), "");
     EXPECT_NE(fault_of("G2 R5 F9\n").find("a full circle has no R form"), std::string::npos);
     EXPECT_NE(fault_of("G2 X1 F9\n").find("G2: expected R, or the centre"), std::string::npos);
     EXPECT_NE(fault_of("G2 X1 R5 I1 F9\n").find("G2: found both R and a centre"),
