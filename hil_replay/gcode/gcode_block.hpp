@@ -43,6 +43,10 @@ inline constexpr char kAxisLetters[] = {'X', 'Y', 'Z', 'A', 'B', 'C', 'U', 'V', 
 [[nodiscard]] constexpr bool is_canned_cycle(std::int32_t motion) {
     return motion == 730 || (motion >= 810 && motion <= 890);
 }
+/// M2, M30.
+[[nodiscard]] inline bool ends_program(const GcodeBlock& block) {
+    return block.code(ModalGroup::stop) == 20 || block.code(ModalGroup::stop) == 300;
+}
 /// M50 to M53 and M62 to M65 use P: on or off, or the number of an output.
 [[nodiscard]] inline bool takes_p(const GcodeBlock& block) {
     return block.code(ModalGroup::overrides) >= 500 || block.code(ModalGroup::outputs) != -1;

@@ -68,13 +68,17 @@ std::optional<FlowLine> read_flow_line(std::size_t line, std::string_view text,
         out.id = std::string(rest.substr(zeros, end - zeros));
         rest.remove_prefix(end);
     }
+    if (rest.empty()) {
+        out.word = number;
+        return out;
+    }
     const auto* const word = std::find_if(kWords.begin(), kWords.end(), [rest](const auto& one) {
         return rest.substr(0, std::string_view(one.first).size()) == one.first;
     });
     if (word == kWords.end()) {
         fault =
             "expected sub, call, return, if, while, do, repeat, break, continue, or the end of "
-            "one; Fanuc's M98 and bare O numbers are not supported";
+            "one, or nothing after the number of a program; Fanuc's M98 is not supported";
         return std::nullopt;
     }
     out.word = word->second;
@@ -104,8 +108,8 @@ GcodeFlow::GcodeFlow(std::span<const std::string_view> lines, GcodeParameters& p
 std::string GcodeFlow::run(std::size_t line, std::size_t& next) {
     const auto place = place_of_line_.find(line);
     if (place == place_of_line_.end()) {
-        const auto fault = fault_of_line_.find(line);
-        return fault == fault_of_line_.end() ? "cannot be read" : fault->second;
+        const std::string fault = fault_of(line);
+        return fault.empty() ? "cannot be read" : fault;
     }
     const FlowLine& at = flow_[place->second];
     fault_.clear();
@@ -128,6 +132,9 @@ std::string GcodeFlow::run(std::size_t line, std::size_t& next) {
             skip_to_endif(at, next);
             break;
         case endif:
+            break;
+        case number:
+            pass_number();
             break;
         case while_:
             loop_while(at, next);
@@ -189,6 +196,20 @@ bool GcodeFlow::read_condition(const FlowLine& at, bool& is_true) {
     }
     is_true = values[0] != 0;
     return true;
+}
+
+std::string GcodeFlow::fault_of(std::size_t line) const {
+    const auto fault = fault_of_line_.find(line);
+    return fault == fault_of_line_.end() ? std::string() : fault->second;
+}
+
+/// LinuxCNC 2.9 begins a subroutine here, and one within another is an error.
+void GcodeFlow::pass_number() {
+    const bool is_in_sub = std::any_of(frames_.begin(), frames_.end(),
+                                       [](const Frame& frame) { return frame.start->word == sub; });
+    if (is_in_sub) {
+        fault_ = "a program number inside a subroutine; delete the line";
+    }
 }
 
 /// Skips the subroutine: it runs only when it is called.

@@ -31,6 +31,7 @@ enum class FlowWord : std::uint8_t {
     endrepeat,
     break_,
     continue_,
+    number,  // nothing after it: a program's number, which does nothing
 };
 
 /// One O-line: "o<pocket> call [3]" is {line, "<POCKET>", call, "[3]"}.
@@ -51,6 +52,9 @@ class GcodeFlow {
     /// @return  empty, or the fault; the program cannot continue after a fault
     [[nodiscard]] std::string run(std::size_t line, std::size_t& next);
 
+    /// The fault of a wrong O-line, whether it runs or not; empty for any other line.
+    [[nodiscard]] std::string fault_of(std::size_t line) const;
+
   private:
     struct Frame {
         const FlowLine* start = nullptr;  // call, while, do or repeat
@@ -62,6 +66,7 @@ class GcodeFlow {
                                              std::initializer_list<FlowWord> words) const;
     [[nodiscard]] bool read_values(const FlowLine& at, std::vector<double>& values);
     [[nodiscard]] bool read_condition(const FlowLine& at, bool& is_true);
+    void pass_number();
     void run_sub(const FlowLine& at, std::size_t& next);
     void call(const FlowLine& at, std::size_t& next);
     void end_call(const FlowLine& at, std::size_t& next);

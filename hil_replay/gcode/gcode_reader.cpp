@@ -2,7 +2,9 @@
 #include "hil_replay/gcode/gcode_reader.hpp"
 
 #include <algorithm>
+#include <set>
 
+#include "config/text/text_line.hpp"
 #include "core/base/sincos.hpp"
 #include "hil_replay/gcode/gcode_block.hpp"
 #include "hil_replay/gcode/gcode_dialect.hpp"
@@ -29,12 +31,16 @@ std::string printable_line(std::string_view text) {
 
 namespace {
 
-std::vector<std::string_view> lines_of(std::string_view text) {
+/// @param first_return  out: number of the first line that a CR alone ends, or 0
+std::vector<std::string_view> lines_of(std::string_view text, std::size_t& first_return) {
     std::vector<std::string_view> lines;
+    first_return = 0;
     while (!text.empty()) {
-        const std::size_t end = std::min(text.find('\n'), text.size());
-        lines.push_back(text.substr(0, end));
-        text.remove_prefix(std::min(end + 1, text.size()));
+        bool is_lone_return = false;
+        lines.push_back(take_text_line(text, &is_lone_return));
+        if (is_lone_return && first_return == 0) {
+            first_return = lines.size();
+        }
     }
     return lines;
 }
@@ -46,12 +52,17 @@ class Reading {
             GcodeResult& result)
         : options_(options),
           result_(result),
-          lines_(lines_of(text)),
+          lines_(lines_of(text, first_return_)),
           interpreter_(machine, options, result),
           parameters_([this](std::uint32_t index) { return interpreter_.parameter(index); }),
           flow_(lines_, parameters_) {}
 
     void run() {
+        if (first_return_ != 0) {
+            result_.notes.push_back(std::to_string(first_return_) +
+                                    ": a carriage return alone ends the line; LinuxCNC reads it as "
+                                    "a blank: convert the line ends");
+        }
         std::size_t next = 0;
         std::uint64_t steps = 0;
         while (next < lines_.size() && !has_ended()) {
@@ -118,12 +129,36 @@ class Reading {
             std::string wrong = flow_.run(at, next);
             if (!wrong.empty()) {
                 fault(at, "O", std::move(wrong));
+                list_words_after(at);
                 return false;
             }
             return true;
         }
         run_block(at, line);
         return true;
+    }
+
+    /// Which lines run is unknown after a wrong O-word: lists the words of all others that no line
+    /// may have, and wrong O-words, without running any.
+    void list_words_after(std::size_t at) {
+        while (++at < lines_.size()) {
+            if (result_.faults.size() >= options_.faults_max) {
+                result_.has_more_faults = true;
+                return;
+            }
+            const GcodeLine line = lex_gcode_line(lines_[at], &parameters_);
+            std::string wrong = flow_.fault_of(at);
+            if (!wrong.empty()) {
+                fault(at, "O", std::move(wrong));
+            } else if (line.fault.empty()) {
+                const GcodeBlock block = make_gcode_block(line, static_cast<std::uint32_t>(at + 1),
+                                                          options_.ignored, result_.faults);
+                percents_ += line.is_percent ? 1 : 0;
+                if (percents_ >= 2 || ends_program(block)) {
+                    return;
+                }
+            }
+        }
     }
 
     void run_block(std::size_t at, const GcodeLine& line) {
@@ -143,14 +178,19 @@ class Reading {
         }
         if (result_.faults.size() == faults_before) {
             interpreter_.run(block);
-        } else {
-            interpreter_.skip_block();
+            return;
+        }
+        interpreter_.skip_block();
+        if (!faulty_lines_.insert(at).second) {
+            result_.faults.resize(faults_before);  // a loop came again
         }
     }
 
     const GcodeOptions& options_;
     GcodeResult& result_;
+    std::size_t first_return_ = 0;
     std::vector<std::string_view> lines_;
+    std::set<std::size_t> faulty_lines_;  // with a fault of their words, reported once
     GcodeInterpreter interpreter_;
     GcodeParameters parameters_;
     GcodeFlow flow_;

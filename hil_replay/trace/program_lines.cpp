@@ -14,6 +14,7 @@
 #include "config/text/fault_text.hpp"
 #include "config/text/quote_text.hpp"
 #include "config/text/small_file.hpp"
+#include "config/text/text_line.hpp"
 #include "core/base/crc32.hpp"
 
 namespace axg {
@@ -134,7 +135,7 @@ void add_blocks(ProgramLines& lines, std::string_view program_text) {
     lines.program_crc = crc_of(program_text);
     std::vector<std::string_view> blocks{{}};  // line 0 is none
     while (!program_text.empty()) {
-        blocks.push_back(without_blanks(take_line(program_text)));
+        blocks.push_back(without_blanks(take_text_line(program_text)));
     }
     for (ProgramStep& step : lines.steps) {
         step.block = step.line < blocks.size() ? blocks[step.line].substr(0, kBlockBytesMax)

@@ -147,7 +147,8 @@ def random_program(rng):
             lambda: f"[{value:.3f} + atan[1]/[1] - 45]",
         ))()
 
-    lines = [f"G{rng.choice((20, 21))} G90 G94 F{number(50, 500)} S100 M3", "G0 X0 Y0 Z20",
+    lines = [rng.choice(("", "O0042 (a part)", "n1 o<part> ; named")),
+             f"G{rng.choice((20, 21))} G90 G94 F{number(50, 500)} S100 M3", "G0 X0 Y0 Z20",
              "#1 = 3.5 #2 = [#1 * 2]", "#<_Name> = 1.25", "#<own one> = -2"]
     plane, labels = 17, iter(range(100, 1000))
 

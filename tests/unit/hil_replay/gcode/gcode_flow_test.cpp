@@ -60,6 +60,33 @@ TEST(GcodeFlow, WrongOnesSayWhatAndEndTheReading) {
     expect_fault("o1 sub\no1 call\no1 endsub\no1 call\n", "more than 100 nested calls and loops");
 }
 
+// As posts for Fanuc and Haas write it; tests/oracle/rs274_test.py compares with LinuxCNC.
+TEST(GcodeFlow, AProgramNumberDoesNothing) {
+    EXPECT_EQ(end_of("%\nO0042 (BRACKET)\nG21 G90\nG0 X8\nM30\n%\n")[kX], 8);
+    EXPECT_EQ(end_of("N1 o<bracket>\nG0 X8\no7\nX9\n")[kX], 9);
+    EXPECT_EQ(end_of("o1 if [1]\nO7\nG0 X1\no1 endif\n")[kX], 1);
+    expect_fault("o1 sub\nO7\no1 endsub\no1 call\n",
+                 "O: a program number inside a subroutine; delete the line");
+    expect_fault("O7 G0 X1\n", "expected sub, call, return");
+}
+
+TEST(GcodeFlow, FaultsAfterAWrongOWordAreListedToo) {
+    EXPECT_EQ(
+        faults_of(read("%\no5 spin\nG0 X1\nG68.2 X0 Y0\n#<a> = #<b>\no6 wobble\nG69 M2\nG87\n")),
+        "2: O: expected sub, call, return, if, while, do, repeat, break, continue, or the end "
+        "of one, or nothing after the number of a program; Fanuc's M98 is not supported\n"
+        "4: G68.2: not supported (not a word of this dialect)\n"
+        "6: O: expected sub, call, return, if, while, do, repeat, break, continue, or the end "
+        "of one, or nothing after the number of a program; Fanuc's M98 is not supported\n"
+        "7: G69: not supported (not a word of this dialect)\n");
+    EXPECT_EQ(read("O12\nG68.2\nG53.1\nG0 X1\nG69\nM30\n").faults.size(), 3U);
+    GcodeOptions options;
+    options.faults_max = 2;
+    EXPECT_TRUE(read("o5 spin\nG87\nG87\n", options).has_more_faults);
+    EXPECT_EQ(read("o1 repeat [9]\nG87 X1\no1 endrepeat\nG88\n").faults.size(), 2U)
+        << "a line of a loop is named once";
+}
+
 TEST(GcodeFlow, ALoopWithoutAnEndIsFoundByItsLines) {
     GcodeOptions options;
     options.steps_max = 1000;

@@ -18,6 +18,21 @@ TEST(GcodeLexer, BlanksCaseAndCommentsDoNotMatter) {
     EXPECT_EQ(end[kZ], 3.0);
 }
 
+TEST(GcodeLexer, LinesEndWithEitherCharacterOrBoth) {
+    for (const char* const text :
+         {"G0 X1 ; to\rY2 (there)\rM2\r", "G0 X1 ; to\r\nY2 (there)\r\nM2\r\n",
+          "G0 X1 ; to\nY2 (there)\rM2\r\n", "\r\r\n\nG0 X1\rY2\r\nM2"}) {
+        const AxisPositions end = end_of(text);
+        EXPECT_EQ(end[kX], 1) << text;
+        EXPECT_EQ(end[kY], 2) << text;
+    }
+    EXPECT_NE(fault_of("M3\rM5\r\nG0 X1 !\n").find("3: !"), std::string::npos);
+    EXPECT_EQ(read("M3\r\nM5\rM2\r").notes,
+              std::vector<std::string>{"2: a carriage return alone ends the line; LinuxCNC reads "
+                                       "it as a blank: convert the line ends"});
+    EXPECT_TRUE(read("M3\r\nM5\r\nM2\r\n").notes.empty());
+}
+
 TEST(GcodeLexer, WhatIsNoWordSaysSo) {
     EXPECT_NE(fault_of("G0 X#<a>\n").find("1: X#: #<A>: no line has set it"), std::string::npos);
     EXPECT_NE(fault_of("G0 X1 (open\n").find("comment not closed"), std::string::npos);
