@@ -42,6 +42,8 @@ struct CompiledMachine {
 [[nodiscard]] std::vector<ConfigFault> load_compiled(const std::string& path, CompiledMachine& out);
 
 /// The machine of a machine file or of a compiled one, without its meshes.
-[[nodiscard]] std::vector<ConfigFault> load_machine(const std::string& path, Machine& out);
+/// @param source  out, if not null: the text of the machine file
+[[nodiscard]] std::vector<ConfigFault> load_machine(const std::string& path, Machine& out,
+                                                    MachineText* source = nullptr);
 
 }  // namespace axg

@@ -343,17 +343,18 @@ std::vector<ConfigFault> load_compiled(const std::string& path, CompiledMachine&
     return parse_compiled(bytes, path, out);
 }
 
-std::vector<ConfigFault> load_machine(const std::string& path, Machine& out) {
-    if (is_compiled_name(path)) {
-        CompiledMachine compiled;
-        std::vector<ConfigFault> faults = load_compiled(path, compiled);
-        if (faults.empty()) {
-            out = std::move(compiled.machine);
+std::vector<ConfigFault> load_machine(const std::string& path, Machine& out, MachineText* source) {
+    CompiledMachine read;
+    std::vector<ConfigFault> faults = is_compiled_name(path)
+                                          ? load_compiled(path, read)
+                                          : load_machine(path, read.machine, read.source);
+    if (faults.empty()) {
+        out = std::move(read.machine);
+        if (source != nullptr) {
+            *source = std::move(read.source);
         }
-        return faults;
     }
-    MachineText source;
-    return load_machine(path, out, source);
+    return faults;
 }
 
 }  // namespace axg

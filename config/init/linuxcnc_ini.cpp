@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <map>
 #include <utility>
 
@@ -136,7 +137,8 @@ std::string letters_in(std::string_view text) {
 
 class Reader {
   public:
-    Reader(const Sections& sections, const std::string& name) : sections_(sections), name_(name) {}
+    Reader(const Sections& sections, const std::string& name, const NamedFiles& files)
+        : sections_(sections), name_(name), files_(files) {}
 
     IniAxes read(std::vector<std::string> faults) {
         out_.faults = std::move(faults);
@@ -160,6 +162,7 @@ class Reader {
                 take_axis(letter);
             }
         }
+        read_program();
         return std::move(out_);
     }
 
@@ -275,6 +278,93 @@ class Reader {
         axis.is_unlimited = axis.is_rotary && (is_wrapped || !has_end);
     }
 
+    static std::string source_of(const Value& value, const std::string& section,
+                                 const std::string& key) {
+        return value.file + ':' + std::to_string(value.line) + ": [" + section + "] " + key +
+               " = " + escaped(value.text, 200);
+    }
+
+    void set(std::string key, char letter, std::string value, std::string source) {
+        out_.program.push_back({std::move(key), letter, std::move(value), std::move(source)});
+    }
+
+    /// What decides the meaning of a program. Source: LinuxCNC 2.9, rs274ngc_pre.cc.
+    void read_program() {
+        const Value* const units = find("TRAJ", "LINEAR_UNITS");
+        if (units != nullptr && (linear_ == 1 || std::abs(linear_ - 25.4) < 1e-6)) {
+            set("start_unit", 0, linear_ == 1 ? "mm" : "inch",
+                source_of(*units, "TRAJ", "LINEAR_UNITS"));
+        }
+        for (const IniAxis& axis : out_.axes) {
+            const std::string section = std::string("AXIS_") + axis.letter;
+            const Value* const wrapped = find(section, "WRAPPED_ROTARY");
+            if (axis.is_unlimited && (wrapped == nullptr || wrapped->text != "1")) {
+                set("rotary", axis.letter, "programmed",
+                    name_ + ": [" + section + "] WRAPPED_ROTARY is not 1");
+            }
+        }
+        constexpr const char* kSection = "RS274NGC";
+        if (const Value* const code = find(kSection, "RS274NGC_STARTUP_CODE")) {
+            set("startup_code", 0, quoted(code->text, 250),
+                source_of(*code, kSection, "RS274NGC_STARTUP_CODE"));
+        }
+        for (const char* const unit : {"MM", "INCH"}) {
+            const std::string key = std::string("CENTER_ARC_RADIUS_TOLERANCE_") + unit;
+            const Value* const value = find(kSection, key);
+            if (value != nullptr && number_of(without_comment(value->text))) {
+                set(std::string("arc_tolerance_") + (*unit == 'M' ? "mm" : "inch"), 0,
+                    std::string(without_comment(value->text)), source_of(*value, kSection, key));
+            }
+        }
+        const Value* const fanuc = find(kSection, "DISABLE_FANUC_STYLE_SUB");
+        if (fanuc != nullptr && without_comment(fanuc->text) == "1") {
+            set("program_numbers", 0, "false",
+                source_of(*fanuc, kSection, "DISABLE_FANUC_STYLE_SUB"));
+        }
+        read_stored_positions();
+    }
+
+    /// Parameters 5161 to 5169 and 5181 to 5189 of the file of parameters, in the machine's units.
+    void read_stored_positions() {
+        const Value* const value = find("RS274NGC", "PARAMETER_FILE");
+        if (value == nullptr) {
+            return;
+        }
+        const std::string name(without_comment(value->text));
+        const NamedFile file = files_(name, kIncludeBytesMax);
+        if (!file.got.empty()) {
+            return;  // LinuxCNC makes it at its first start
+        }
+        const std::string source = source_of(*value, "RS274NGC", "PARAMETER_FILE");
+        for (const auto& [key, first] : {std::pair{"g28", 5161}, std::pair{"g30", 5181}}) {
+            for (const IniAxis& axis : out_.axes) {
+                const auto place = static_cast<int>(kAxisLetters.find(axis.letter));
+                // The file has X Y Z A B C U V W, as kAxisLetters.
+                const int index = first + place;
+                if (const auto stored = parameter(file.text, index)) {
+                    char text[40];
+                    std::snprintf(text, sizeof text, "%.9g",
+                                  *stored * (axis.is_rotary ? angular_ : linear_));
+                    set(key, axis.letter, text,
+                        source + ", parameters " + std::to_string(first) + " on");
+                }
+            }
+        }
+    }
+
+    /// The value in a line "5161	12.5", or nothing.
+    static std::optional<double> parameter(std::string_view text, int index) {
+        while (!text.empty()) {
+            const std::string_view line = trimmed(text.substr(0, text.find('\n')));
+            text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
+            const std::size_t gap = line.find_first_of(" \t");
+            if (gap != std::string_view::npos && line.substr(0, gap) == std::to_string(index)) {
+                return number_of(trimmed(line.substr(gap)));
+            }
+        }
+        return std::nullopt;
+    }
+
     void fault(const std::string& section, const std::string& key, const Value* value,
                const std::string& wanted) {
         std::string text = value == nullptr ? name_ : value->file;
@@ -327,6 +417,7 @@ class Reader {
 
     const Sections& sections_;
     const std::string& name_;
+    const NamedFiles& files_;
     IniAxes out_;
     std::string joints_;  // the axis of each joint
     bool is_trivial_ = true;
@@ -340,7 +431,7 @@ IniAxes read_linuxcnc_ini(std::string_view text, const std::string& name,
     std::vector<std::string> faults;
     SectionReader reader(includes, faults);
     reader.read(text, name);
-    return Reader(reader.sections(), name).read(std::move(faults));
+    return Reader(reader.sections(), name, includes).read(std::move(faults));
 }
 
 }  // namespace axg

@@ -25,14 +25,23 @@ struct IniAxis {
     std::optional<double> speed, acceleration, jerk;  // a second
 };
 
+/// A key of the section `program` of a machine file, and where the INI states it.
+struct IniSetting {
+    std::string key;
+    char letter = 0;  // of an axis, for a map of axes; 0: the value is the key's
+    std::string value;
+    std::string source;  // "mill.ini:12: [TRAJ] LINEAR_UNITS = inch"
+};
+
 struct IniAxes {
     std::vector<IniAxis> axes;                    // in the order of COORDINATES, each letter once
     std::optional<std::int64_t> servo_period_ns;  // [EMCMOT] SERVO_PERIOD
+    std::vector<IniSetting> program{};            // keys together
     std::vector<std::string> faults;              // "machine.ini:12: [AXIS_X] MAX_LIMIT: ..."
 };
 
 /// @param name      of the file, for messages
-/// @param includes  reads what #INCLUDE names
+/// @param includes  reads what #INCLUDE and [RS274NGC] PARAMETER_FILE name
 [[nodiscard]] IniAxes read_linuxcnc_ini(std::string_view text, const std::string& name,
                                         const NamedFiles& includes);
 

@@ -310,6 +310,34 @@ std::string pairs_text(const std::vector<RoleGuess>& roles) {
     return text;
 }
 
+/// The section `program`, each line with its source; nothing without an INI file.
+std::string program_text(const std::vector<IniSetting>& settings,
+                         const std::vector<RoleGuess>& roles) {
+    std::string text;
+    for (std::size_t i = 0; i < settings.size(); ++i) {
+        const IniSetting& first = settings[i];
+        if (first.letter == 0) {
+            text += fmt::format("  {}: {}  # {}\n", first.key, first.value, first.source);
+            continue;
+        }
+        std::string values;
+        for (; i < settings.size() && settings[i].key == first.key; ++i) {
+            const IniSetting& one = settings[i];
+            const bool is_used = std::any_of(roles.begin(), roles.end(), [&](const RoleGuess& r) {
+                return r.axis == one.letter;
+            });
+            values +=
+                is_used ? fmt::format("{}{}: {}", values.empty() ? "" : ", ", one.letter, one.value)
+                        : "";
+        }
+        --i;
+        if (!values.empty()) {
+            text += fmt::format("  {}: {{{}}}  # {}\n", first.key, values, first.source);
+        }
+    }
+    return text.empty() ? text : "\n# What decides the meaning of a program.\nprogram:\n" + text;
+}
+
 /// Rounds to microseconds; the rest uses part of the 1 % that every proof allows the period.
 std::string period_text(std::int64_t period_ns) {
     if (period_ns == 0) {
@@ -327,10 +355,10 @@ std::string period_text(std::int64_t period_ns) {
 }  // namespace
 
 std::string machine_file_text(const std::string& name, const std::vector<SurveyedMesh>& meshes,
-                              const std::vector<RoleGuess>& roles,
-                              const std::vector<IniAxis>& known, std::int64_t period_ns) {
+                              const std::vector<RoleGuess>& roles, const IniAxes& ini) {
+    const std::int64_t period_ns = ini.servo_period_ns.value_or(0);
     std::string text = fmt::format("{}name: {}\n", kHead + 1, quoted(name, 128));
-    text += axes_text(roles, known) + kBodiesHead;
+    text += axes_text(roles, ini.axes) + program_text(ini.program, roles) + kBodiesHead;
     for (const RoleGuess& role : roles) {
         text += body_text(role, meshes[role.file], roles);
     }

@@ -18,13 +18,13 @@ inline constexpr const char* kReviewMark = "REVIEW:";
 
 /// @param meshes  without faults, file names as the machine file shall contain them
 /// @param roles   of exactly these meshes
-/// @param known   limits of axes; others are guessed. Axes that no body has are listed too
-/// @param period_ns  of the board; 0: not stated, the file leaves can.sample_us at its default
+/// @param ini     limits of axes; others are guessed. Axes that no body has are listed too. A
+/// period
+///                that it does not state leaves can.sample_us at its default
 /// @return        commented YAML; parse_machine() accepts it (two surfaces at least)
 [[nodiscard]] std::string machine_file_text(const std::string& name,
                                             const std::vector<SurveyedMesh>& meshes,
                                             const std::vector<RoleGuess>& roles,
-                                            const std::vector<IniAxis>& known = {},
-                                            std::int64_t period_ns = 0);
+                                            const IniAxes& ini = {});
 
 }  // namespace axg

@@ -337,6 +337,7 @@ void fill_top(YamlNode& top, const Machine& machine) {
     fill_none(top, {"exclusions", "output_line"});
     fill_capacities(map_at(top, "capacities"), machine.capacities);
     fill_cycle(top, machine.cycle);
+    fill_none(top, {"program"});  // what it leaves out is unknown
 }
 
 }  // namespace

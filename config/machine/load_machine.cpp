@@ -10,6 +10,7 @@
 
 #include "config/can/read_can.hpp"
 #include "config/machine/parse_machine.hpp"
+#include "config/machine/program_settings.hpp"
 #include "config/machine/read_sections.hpp"
 #include "config/text/fault_list.hpp"
 #include "config/text/map_reader.hpp"
@@ -43,6 +44,8 @@ void read_top(MapReader& top, MachineDraft& draft) {
     read_output_line(top, draft);
     read_capacities(top, draft);
     read_cycle(top, draft);
+    ProgramSettings settings;  // judged here, kept by program_settings()
+    read_program(top, draft, settings);
 }
 
 /// Merges maps key by key; any other value of `changes` replaces that of `root`.
@@ -103,7 +106,7 @@ std::vector<ConfigFault> parse(const std::string& text, const std::vector<std::s
                   "",
                   {"version", "name", "deadline_us", "engine", "program_speed_mm_min", "axes",
                    "bodies", "tools", "first_tool", "pairs", "exclusions", "can", "guard",
-                   "output_line", "capacities", "cycle"},
+                   "output_line", "capacities", "cycle", "program"},
                   faults};
     if (root.kind == YamlNode::Kind::map) {
         read_top(top, draft);

@@ -9,6 +9,7 @@
 namespace axg {
 
 class MapReader;
+struct ProgramSettings;
 struct YamlNode;
 
 // Each reads one section of the file. Faults go to draft.faults; what could be read is in
@@ -22,6 +23,8 @@ void read_pairs(MapReader& top, MachineDraft& draft);
 void read_output_line(MapReader& top, MachineDraft& draft);
 void read_capacities(MapReader& top, MachineDraft& draft);
 void read_cycle(MapReader& top, MachineDraft& draft);
+/// After `axes`.
+void read_program(MapReader& top, MachineDraft& draft, ProgramSettings& out);
 
 // Parts that bodies and tools share.
 void read_mesh(const YamlNode& node, const std::string& path, FaultList& faults, MeshSource& out);

@@ -87,11 +87,8 @@ int load(const MachineOptions& options, LoadedMachine& out) {
     return exit_code_of(options, out.machine, out.source);
 }
 
-int load_without_meshes(const MachineOptions& options, Machine& out) {
-    MachineText source;
-    const std::vector<ConfigFault> faults = is_compiled_name(options.file)
-                                                ? load_machine(options.file, out)
-                                                : load_machine(options.file, out, source);
+int load_without_meshes(const MachineOptions& options, Machine& out, MachineText& source) {
+    const std::vector<ConfigFault> faults = load_machine(options.file, out, &source);
     for (const ConfigFault& fault : faults) {
         std::fprintf(stderr, "%s\n", to_string(fault).c_str());
     }

@@ -28,6 +28,8 @@ void add_machine_options(const Command& command, MachineOptions& options);
 ///          command is a file of the machine
 [[nodiscard]] int load(const MachineOptions& options, LoadedMachine& out);
 /// The same without surfaces, for what needs none of them.
-[[nodiscard]] int load_without_meshes(const MachineOptions& options, Machine& out);
+/// @param source  out: the text of the machine file
+[[nodiscard]] int load_without_meshes(const MachineOptions& options, Machine& out,
+                                      MachineText& source);
 
 }  // namespace axg

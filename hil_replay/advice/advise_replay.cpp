@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "config/machine/program_settings.hpp"
 #include "core/base/sincos.hpp"
 #include "hil_replay/advice/advise_drive.hpp"
 #include "hil_replay/advice/gain.hpp"
@@ -66,7 +67,8 @@ void advise_by_board(const ReplayAdvice& advice, Advice& out) {
     std::string text;
     GcodeOptions options;
     if (!loaded || !std::filesystem::is_regular_file(advice.gcode.program, error) ||
-        !make_gcode_options(advice.gcode, loaded->machine, options) ||
+        !make_gcode_options(advice.gcode, loaded->machine,
+                            program_settings(loaded->source, loaded->machine), options) ||
         !read_program_text(advice.gcode.program, text)) {
         return;
     }

@@ -88,6 +88,7 @@ Json describe_reading(const GcodeResult& result) {
     }
     document["more_faults"] = result.has_more_faults;
     document["notes"] = result.notes;
+    document["read_as"] = result.read_as;
     return document;
 }
 

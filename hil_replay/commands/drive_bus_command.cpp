@@ -268,6 +268,7 @@ int run_bus_drive(const DriveArguments& arguments) {
                                  options.board.axis_shares),
              options, path, samples, lines);
     release_signals();
+    lines.read_as = read_as_text(reading.read_as);
     add_blocks(lines, reading.text);
     PathJudge judge(machine, parts.engine->engine(), containment_test);
     path.show(judge);

@@ -78,7 +78,8 @@ int make_options(const DriveArguments& arguments, const LoadedMachine& loaded,
     options.response_us = machine.deadline_us;
     options.time_us_max =
         static_cast<std::int64_t>(arguments.gcode.samples_max) * machine.can.sample_us;
-    if (!make_gcode_options(arguments.gcode, machine, gcode)) {
+    if (!make_gcode_options(arguments.gcode, machine, program_settings(loaded.source, machine),
+                            gcode)) {
         return kExitUsage;
     }
     if (!is_start_inside(machine, gcode.start)) {
@@ -308,6 +309,7 @@ int run_drive(const DriveArguments& arguments) {
                                          options.board.axis_shares == nullptr ? share : nullptr,
                                          &lost_s, options.board.axis_shares),
                      whole_s, options, csv, page.get(), judge, lines);
+    lines.read_as = read_as_text(reading.read_as);
     add_blocks(lines, reading.text);
     const bool is_finished = result.state == BoardState::finished;
     if (result.samples >= arguments.gcode.samples_max) {

@@ -243,8 +243,7 @@ int init(InitOptions options, const CommandFiles& names) {
         return kExitInput;
     }
     const std::string name = escaped(fs::path(options.out).stem().string(), 100);
-    const std::string text =
-        machine_file_text(name, meshes, roles, known.axes, known.servo_period_ns.value_or(0));
+    const std::string text = machine_file_text(name, meshes, roles, known);
     if (!is_sound(text, options)) {
         return kExitInput;
     }

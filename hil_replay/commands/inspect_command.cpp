@@ -103,8 +103,10 @@ int inspect(const InspectArguments& arguments) {
         return kExitUsage;
     }
     if (has_machine) {
+        MachineText source;
         const int code = load_without_meshes(
-            {.file = arguments.machine, .mesh_root = {}, .files = arguments.json.files}, machine);
+            {.file = arguments.machine, .mesh_root = {}, .files = arguments.json.files}, machine,
+            source);
         if (code != kExitClean) {
             return code;
         }

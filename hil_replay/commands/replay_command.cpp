@@ -91,7 +91,7 @@ Outputs open_outputs(const ReplayArguments& arguments, const LoadedMachine& load
         outputs.page = std::make_unique<PageRecorder>(loaded, engine);
     }
     if (!arguments.gcode.program.empty()) {
-        outputs.program.emplace(arguments.gcode, machine);
+        outputs.program.emplace(arguments.gcode, machine, program_settings(loaded.source, machine));
     }
     return outputs;
 }
@@ -215,7 +215,8 @@ int replay_dump(const ReplayArguments& arguments, LoadedMachine& loaded) {
     }
     std::optional<ProgramFinder> program;
     if (!arguments.gcode.program.empty()) {
-        program.emplace(arguments.gcode, loaded.machine);
+        program.emplace(arguments.gcode, loaded.machine,
+                        program_settings(loaded.source, loaded.machine));
         if (!program->open()) {
             return kExitInput;
         }

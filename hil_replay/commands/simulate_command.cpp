@@ -80,7 +80,7 @@ SimulationSummary simulate_with_progress(const Machine& machine, const Program& 
 }
 
 /// Beside a trace that is a file of its own. False: it was not written, and the reason is printed.
-bool write_program_lines(const SimulateArguments& arguments, const std::string& program_text,
+bool write_program_lines(const SimulateArguments& arguments, const GcodeResult& reading,
                          ProgramLines& lines) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(arguments.output, error)) {
@@ -88,21 +88,24 @@ bool write_program_lines(const SimulateArguments& arguments, const std::string& 
     }
     set_trace(lines, arguments.output);
     lines.program = arguments.gcode.program;
-    add_blocks(lines, program_text);
+    lines.read_as = read_as_text(reading.read_as);
+    add_blocks(lines, reading.text);
     return write_whole_file(program_lines_name(arguments.output), program_lines_text(lines),
                             stderr);
 }
 
 int run_simulate(const SimulateArguments& arguments) {
     Machine machine;
-    if (const int code = load_without_meshes(arguments.machine, machine); code != kExitClean) {
+    MachineText source;
+    if (const int code = load_without_meshes(arguments.machine, machine, source);
+        code != kExitClean) {
         return code;
     }
     if (arguments.is_fd) {
         machine.can.format = CanFormat::fd;
     }
     GcodeOptions options;
-    if (!make_gcode_options(arguments.gcode, machine, options)) {
+    if (!make_gcode_options(arguments.gcode, machine, program_settings(source, machine), options)) {
         return kExitUsage;
     }
     if (!is_start_inside(machine, options.start)) {
@@ -152,10 +155,12 @@ int run_simulate(const SimulateArguments& arguments) {
                      is_about_program ? ":" : "", summary.error.c_str());
         return summary.exit_code;
     }
-    if (!write_program_lines(arguments, reading.text, summary.lines)) {
+    if (!write_program_lines(arguments, reading, summary.lines)) {
         return kExitInternal;
     }
     print_summary(arguments.json.words(), arguments, machine, summary);
+    fmt::print(arguments.json.words(), "{}: {}\n", arguments.gcode.program,
+               read_as_text(reading.read_as));
     return write_json(arguments.json, describe_simulate(report, machine, &summary)) ? kExitClean
                                                                                     : kExitInternal;
 }

@@ -7,11 +7,6 @@
 
 namespace axg {
 
-// LinuxCNC 2.9, interp_internal.hh, CENTER_ARC_RADIUS_TOLERANCE_MM and _INCH: what centres and ends
-// rounded to 0.01 mm or 0.001 in cause.
-inline constexpr double kArcToleranceMm = 0.028284271247461901;
-inline constexpr double kArcToleranceInch = 0.0028284271247461901;
-
 /// In the plane's own two coordinates, mm. Exactly one of the two forms is given.
 struct ArcWords {
     double start_first = 0, start_second = 0;
@@ -21,7 +16,7 @@ struct ArcWords {
     double center_first = 0, center_second = 0;  // IJK form, absolute
     bool is_clockwise = false;
     int turns = 1;
-    double tolerance_mm = kArcToleranceMm;  // of the radii, by the program's unit
+    double tolerance_mm = 0;  // of the radii, by the program's unit
 };
 
 struct ArcShape {

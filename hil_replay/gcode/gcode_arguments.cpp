@@ -66,7 +66,12 @@ void check_length(const Machine& machine, const GcodeOptions& options, GcodeResu
 }  // namespace
 
 bool make_gcode_options(const GcodeArguments& arguments, const Machine& machine,
-                        GcodeOptions& options) {
+                        const ProgramSettings& settings, GcodeOptions& options) {
+    options.program = settings;
+    if (!arguments.rotary.empty()) {
+        options.program.rotary.fill(arguments.rotary == "short" ? RotaryRule::shortest
+                                                                : RotaryRule::programmed);
+    }
     options.start = default_start(machine);
     options.faults_max = arguments.faults_max;
     options.steps_max = arguments.lines_max;
@@ -75,7 +80,6 @@ bool make_gcode_options(const GcodeArguments& arguments, const Machine& machine,
     options.sample_us = machine.can.sample_us;
     options.ignored = arguments.ignored;
     options.part = arguments.part;
-    options.takes_short_way = arguments.rotary == "short";
     for (std::string& word : options.ignored) {
         for (char& c : word) {
             c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
@@ -188,10 +192,9 @@ std::vector<Option> add_gcode_settings(const Command& command, GcodeArguments& a
             .shows_default(),
         command
             .add_option("--rotary", arguments.rotary,
-                        "absolute words of endless axes: programmed = full turns, short = at most "
-                        "half a turn")
-            .one_of({"programmed", "short"})
-            .shows_default(),
+                        "absolute words of endless axes: programmed = full turns, short = less "
+                        "than half a turn [default: program.rotary of the machine file]")
+            .one_of({"programmed", "short"}),
         command.add_option("--part", arguments.part,
                            "body that carries the part, for tool centre point control [default: "
                            "the body that most axes move]"),

@@ -16,7 +16,7 @@ class Command;
 class Option;
 
 struct GcodeArguments {
-    std::string program, start, part, block_delete = "refuse", rotary = "programmed";
+    std::string program, start, part, block_delete = "refuse", rotary;
     std::vector<std::string> work_offsets, tools, ignored;
     std::size_t faults_max = GcodeOptions{}.faults_max, moves_max = GcodeOptions{}.moves_max;
     std::uint64_t lines_max = GcodeOptions{}.steps_max, samples_max = GcodeOptions{}.samples_max;
@@ -28,8 +28,9 @@ std::vector<Option> add_gcode_settings(const Command& command, GcodeArguments& a
 
 /// Converts the arguments to options for this machine. False: an argument is invalid; the message
 /// on stderr shows the expected form.
+/// @param settings  of the machine file; arguments overrule them
 [[nodiscard]] bool make_gcode_options(const GcodeArguments& arguments, const Machine& machine,
-                                      GcodeOptions& options);
+                                      const ProgramSettings& settings, GcodeOptions& options);
 
 /// Whether every axis starts within its travel; else prints the axes outside on stderr.
 [[nodiscard]] bool is_start_inside(const Machine& machine, const AxisPositions& start);

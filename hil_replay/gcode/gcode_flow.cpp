@@ -198,6 +198,11 @@ bool GcodeFlow::read_condition(const FlowLine& at, bool& is_true) {
     return true;
 }
 
+bool GcodeFlow::is_number(std::size_t line) const {
+    const auto place = place_of_line_.find(line);
+    return place != place_of_line_.end() && flow_[place->second].word == number;
+}
+
 std::string GcodeFlow::fault_of(std::size_t line) const {
     const auto fault = fault_of_line_.find(line);
     return fault == fault_of_line_.end() ? std::string() : fault->second;

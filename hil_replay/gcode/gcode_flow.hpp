@@ -52,6 +52,8 @@ class GcodeFlow {
     /// @return  empty, or the fault; the program cannot continue after a fault
     [[nodiscard]] std::string run(std::size_t line, std::size_t& next);
 
+    /// Whether the line has a program's number and nothing else.
+    [[nodiscard]] bool is_number(std::size_t line) const;
     /// The fault of a wrong O-line, whether it runs or not; empty for any other line.
     [[nodiscard]] std::string fault_of(std::size_t line) const;
 

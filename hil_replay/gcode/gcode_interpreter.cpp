@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hil_replay/gcode/gcode_interpreter.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <iterator>
@@ -28,6 +29,7 @@ GcodeInterpreter::GcodeInterpreter(const Machine& machine, const GcodeOptions& o
     state_.position = options.start;
     state_.spindle_tool = machine.first_tool;
     state_.work_offsets = options.work_offsets;
+    state_.is_inch = options.program.starts_in_inch.value_or(false);
     result_.program.start = options.start;
     result_.program.start_tool = machine.first_tool;
 }
@@ -58,6 +60,7 @@ void GcodeInterpreter::run(const GcodeBlock& block) {
     change_tool();
     dwell();
     set_modes();
+    use_lengths();
     write_offsets();
     move();
     stop();
@@ -71,6 +74,9 @@ void GcodeInterpreter::set_feed_and_tool() {
         if (!state_.is_inverse_time) {
             state_.feed = 0;  // as in LinuxCNC, even if the mode was already on
         }
+    }
+    if (block.value('F') != 0 && !state_.is_inverse_time) {
+        use_start_unit('F');
     }
     if (block.has('F')) {
         const double feed = block.value('F');
@@ -168,6 +174,7 @@ void GcodeInterpreter::set_modes() {
     }
     if (block.code(units) != -1) {
         state_.is_inch = block.code(units) == 200;
+        state_.is_unit_of_start = false;
     }
     set_tool_length();
     if (const std::int32_t code = block.code(offsets); code != -1) {
@@ -190,6 +197,42 @@ void GcodeInterpreter::set_modes() {
     if (block.code(arc_distance) != -1) {
         state_.has_absolute_centers = block.code(arc_distance) == 901;
     }
+}
+
+void GcodeInterpreter::assume(const std::string& setting) {
+    if (std::find(result_.read_as.begin(), result_.read_as.end(), setting) ==
+        result_.read_as.end()) {
+        result_.read_as.push_back(setting);
+    }
+}
+
+void GcodeInterpreter::use_lengths() {
+    for (const char letter : {'X', 'Y', 'Z', 'U', 'V', 'W', 'I', 'J', 'K', 'R'}) {
+        const std::uint32_t axis = axis_of_letter(machine_, letter);
+        const bool is_rotary = axis != kNoIndex && machine_.axes[axis].kind == AxisKind::rotary;
+        if (block_->value(letter) != 0 && !is_rotary) {
+            use_start_unit(letter);
+            return;
+        }
+    }
+    if (block_->code(path) == 640 && block_->value('P') != 0) {
+        use_start_unit('P');
+    }
+}
+
+void GcodeInterpreter::use_start_unit(char letter) {
+    if (!state_.is_unit_of_start) {
+        return;
+    }
+    // F counts in the unit before its block. Beside G20 or G21 it is no error: speed, not place.
+    if (options_.program.starts_in_inch || block_->code(units) != -1) {
+        assume(state_.is_inch ? "starts in inch" : "starts in mm");
+        return;
+    }
+    fault(std::string(1, letter),
+          "no G20 or G21 before this length, and the machine file has no program.start_unit; state "
+          "it there, or write G20 or G21");
+    state_.is_unit_of_start = false;  // said once
 }
 
 void GcodeInterpreter::stop() {

@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "hil_replay/gcode/gcode_block.hpp"
 #include "hil_replay/gcode/gcode_reader.hpp"
@@ -30,6 +31,13 @@ class GcodeInterpreter {
 
   private:
     void fault(const std::string& word, std::string message);
+    /// Adds a setting of the control that decides what this program means.
+    void assume(const std::string& setting);
+    /// A length counts in the unit of the start: a fault, once, if that is unknown.
+    void use_start_unit(char letter);
+    void use_lengths();
+    /// Where an absolute word takes an endless axis, from its target turn by turn.
+    double by_rotary_rule(char letter, std::uint32_t axis, double target);
     void set_feed_and_tool();
     /// The machine's tool number for a T or H word; nothing, and a fault, if there is none.
     std::optional<std::uint16_t> tool_number(char letter);
@@ -56,7 +64,7 @@ class GcodeInterpreter {
     double feed_per_minute(bool moves_linear);
     bool set_arc(Move& next);
     [[nodiscard]] double arc_center(char center_letter, char axis_letter) const;
-    /// G28: moves to the words, if any, then the named axes, or all of them, to machine zero.
+    /// G28, G30: moves to the words, if any, then the named axes, or all, to the stored position.
     void go_home();
     void write_offsets();
     void write_work_offset();
@@ -85,6 +93,7 @@ class GcodeInterpreter {
     GcodeState state_;
     TravelWatch travel_;
     std::optional<TipControl> tip_control_;  // made when a program first switches it on
+    std::vector<std::uint32_t> unruled_;     // axes whose missing rule was reported
     const GcodeBlock* block_ = nullptr;
 };
 

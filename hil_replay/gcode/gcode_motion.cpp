@@ -27,13 +27,14 @@ std::string print(const char* format, double a) {
 void GcodeInterpreter::move() {
     const GcodeBlock& block = *block_;
     const std::int32_t written = block.code(motion);
-    if (block.code(non_modal) == 280) {
+    if (block.code(non_modal) == 280 || block.code(non_modal) == 300) {
+        const char* const word = block.code(non_modal) == 280 ? "G28" : "G30";
         if (written != -1) {
-            fault("G28", "conflicts with a motion word in the same block; write two blocks");
+            fault(word, "conflicts with a motion word in the same block; write two blocks");
             return;
         }
         if (state_.control != kNoIndex) {
-            fault("G28", "machine zero means axes; switch tool centre point control off before it");
+            fault(word, "its position means axes; switch tool centre point control off before it");
             return;
         }
         go_home();
@@ -93,14 +94,13 @@ void GcodeInterpreter::move() {
 }
 
 bool GcodeInterpreter::set_target(AxisPositions& target) {
-    bool is_good = true;
+    const std::size_t faults_before = result_.faults.size();
     for (const char letter : kAxisLetters) {
         if (!block_->has(letter)) {
             continue;
         }
         const std::uint32_t index = named_axis(letter);
         if (index == kNoIndex) {
-            is_good = false;
             continue;
         }
         const double value = word_value(letter, machine_.axes[index]);
@@ -111,21 +111,44 @@ bool GcodeInterpreter::set_target(AxisPositions& target) {
         } else {
             target[index] = value + offset_of(index);
         }
-        if (options_.takes_short_way && !state_.is_incremental && machine_.axes[index].unlimited) {
-            const double way = std::remainder(target[index] - state_.position[index], 2 * kPi);
-            if (kPi - std::abs(way) < kSamePlaceRad) {
-                fault(std::string(1, letter),
-                      "half a turn: the shortest way is up as well as down; write a position "
-                      "between, or pass --rotary programmed");
-                is_good = false;
-            }
-            target[index] = state_.position[index] + way;
+        if (!state_.is_incremental && machine_.axes[index].unlimited) {
+            target[index] = by_rotary_rule(letter, index, target[index]);
         }
     }
     if (state_.motion != 20 && state_.motion != 30) {  // an arc judges its ends together
         settle(target);
     }
-    return is_good;
+    return result_.faults.size() == faults_before;
+}
+
+double GcodeInterpreter::by_rotary_rule(char letter, std::uint32_t axis, double target) {
+    const RotaryRule rule = options_.program.rotary[axis];
+    const double from = state_.position[axis];
+    const double way = std::remainder(target - from, 2 * kPi);
+    const bool is_half = kPi - std::abs(way) < kSamePlaceRad;
+    if (!is_half && std::abs(from + way - target) < kSamePlaceRad) {
+        return target;  // every rule goes there
+    }
+    const std::string word(1, letter);
+    if (rule == RotaryRule::unknown) {
+        if (std::find(unruled_.begin(), unruled_.end(), axis) == unruled_.end()) {
+            unruled_.push_back(axis);
+            fault(word, "the machine file has no program.rotary." + word +
+                            ", which decides how far this endless axis turns; state it there, or "
+                            "pass --rotary");
+        }
+        return target;
+    }
+    assume(word + (rule == RotaryRule::programmed ? " programmed" : " short"));
+    if (rule == RotaryRule::programmed) {
+        return target;
+    }
+    if (is_half) {
+        fault(word,
+              "half a turn: the shortest way is up as well as down; write a position between, or "
+              "pass --rotary programmed");
+    }
+    return from + way;
 }
 
 void GcodeInterpreter::settle(AxisPositions& target) const {
@@ -237,7 +260,8 @@ bool GcodeInterpreter::set_arc(Move& next) {
     words.center_first = arc_center(plane_letters.center_first, plane_letters.first);
     words.center_second = arc_center(plane_letters.center_second, plane_letters.second);
     words.is_clockwise = state_.motion == 20;
-    words.tolerance_mm = state_.is_inch ? kArcToleranceInch * scale() : kArcToleranceMm;
+    words.tolerance_mm = state_.is_inch ? options_.program.arc_tolerance_inch * scale()
+                                        : options_.program.arc_tolerance_mm;
     const double turns = block_->value('P', 1);
     if (turns != std::floor(turns) || turns < 1 || turns > 10000) {
         fault(word, print("P: found %.6g, expected an integer number of turns from 1", turns));
@@ -282,11 +306,23 @@ void GcodeInterpreter::go_home() {
     }
     Move home = new_move(MoveKind::line);
     home.is_exact = true;
+    const bool is_first = block_->code(non_modal) == 280;
+    const StoredPosition& stored = is_first ? options_.program.g28 : options_.program.g30;
+    const std::string word = is_first ? "G28" : "G30", key = is_first ? "g28" : "g30";
     for (const char letter : kAxisLetters) {
         const std::uint32_t axis = axis_of_letter(machine_, letter);
-        if (axis != kNoIndex && (!has_words || block_->has(letter))) {
-            home.target[axis] = 0;
+        if (axis == kNoIndex || (has_words && !block_->has(letter))) {
+            continue;
         }
+        if (!stored[axis]) {
+            fault(word, std::string("its stored position is unknown; state program.") + key + "." +
+                            letter + " in the machine file, or write G53 G0 with the position");
+            return;
+        }
+        const bool is_rotary = machine_.axes[axis].kind == AxisKind::rotary;
+        const double shown = *stored[axis] / (is_rotary ? kRadPerDegree : 1.0);
+        assume(word + " " + letter + print("%.6g", shown));
+        home.target[axis] = *stored[axis];
     }
     append(home);
 }

@@ -63,6 +63,7 @@ class Reading {
                                     ": a carriage return alone ends the line; LinuxCNC reads it as "
                                     "a blank: convert the line ends");
         }
+        run_startup_code();
         std::size_t next = 0;
         std::uint64_t steps = 0;
         while (next < lines_.size() && !has_ended()) {
@@ -99,6 +100,32 @@ class Reading {
             {static_cast<std::uint32_t>(line + 1), std::move(word), std::move(message)});
     }
 
+    /// Its faults and moves have line 0.
+    void run_startup_code() {
+        const std::string& code = options_.program.startup_code;
+        if (code.empty()) {
+            return;
+        }
+        GcodeLine line = lex_gcode_line(code, &parameters_);
+        // M52 P1: how fast the machine then goes is known to it alone, but no path depends on it.
+        const bool has_adaptive_feed = std::erase_if(line.words, [](const GcodeWord& word) {
+                                           return word.text == "M52" || word.text == "P1";
+                                       }) == 2;
+        result_.read_as.push_back("start-up code " + printable_line(code) +
+                                  (has_adaptive_feed ? " (without M52 P1)" : ""));
+        if (!line.flow.empty()) {
+            line.fault_word.assign(1, 'O');
+            line.fault = std::string("no O-word may be in it");
+        }
+        const GcodeBlock block = make_gcode_block(line, 0, options_.ignored, result_.faults);
+        if (result_.faults.empty()) {
+            interpreter_.run(block);
+        }
+        for (ProgramFault& fault : result_.faults) {
+            fault.message += " (program.startup_code of the machine file)";
+        }
+    }
+
     /// Runs one line. False: the program cannot continue.
     bool run_line(std::size_t at, std::size_t& next) {
         const GcodeLine line = lex_gcode_line(lines_[at], &parameters_);
@@ -127,6 +154,11 @@ class Reading {
         }
         if (!line.flow.empty()) {
             std::string wrong = flow_.run(at, next);
+            if (wrong.empty() && flow_.is_number(at) && !options_.program.takes_program_numbers) {
+                wrong =
+                    "a program number, and the machine file has program.program_numbers: false; "
+                    "delete the line";
+            }
             if (!wrong.empty()) {
                 fault(at, "O", std::move(wrong));
                 list_words_after(at);
@@ -198,6 +230,23 @@ class Reading {
 };
 
 }  // namespace
+
+ProgramSettings usual_settings() {
+    ProgramSettings settings;
+    settings.starts_in_inch = false;
+    settings.rotary.fill(RotaryRule::programmed);
+    settings.g28.fill(0.0);
+    settings.g30.fill(0.0);
+    return settings;
+}
+
+std::string read_as_text(const std::vector<std::string>& read_as) {
+    std::string text = read_as.empty() ? "read as written" : "read as: ";
+    for (const std::string& one : read_as) {
+        text += (&one == &read_as.front() ? "" : "; ") + one;
+    }
+    return text;
+}
 
 GcodeResult read_gcode(std::string_view text, const Machine& machine, const GcodeOptions& options) {
     GcodeResult result;

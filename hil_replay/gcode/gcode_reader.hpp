@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "config/machine/program_settings.hpp"
 #include "hil_replay/motion/program.hpp"
 
 namespace axg {
@@ -23,6 +24,9 @@ enum class BlockDelete : std::uint8_t {
     run,     // switch off: they run
 };
 
+/// Nothing unknown: mm, the programmed way, G28 and G30 to zero.
+[[nodiscard]] ProgramSettings usual_settings();
+
 struct GcodeOptions {
     AxisPositions start{};                                   // inside travel, mm or rad
     std::array<AxisPositions, kWorkOffsets> work_offsets{};  // mm or rad, zero unless stated
@@ -30,7 +34,7 @@ struct GcodeOptions {
     std::vector<std::pair<std::uint16_t, std::uint16_t>>
         tools;         // program's number, machine's number
     std::string part;  // the body that carries the part; empty: the one that most axes move
-    bool takes_short_way = false;  // absolute words of endless axes: half a turn at most
+    ProgramSettings program = usual_settings();
     BlockDelete block_delete = BlockDelete::refuse;
     std::size_t faults_max = 20;          // reading stops after this many
     std::uint64_t steps_max = 5'000'000;  // lines to run, repeated lines included
@@ -51,16 +55,21 @@ struct GcodeResult {
     std::vector<ProgramFault> faults;
     bool has_more_faults = false;
     std::vector<IgnoredWord> ignored;
+    // Settings of the control without which the program would mean something else: "starts in mm".
+    std::vector<std::string> read_as;
     std::vector<std::string> notes;  // harmless oddities, as "12: ..."
     std::uint32_t line_count = 0;
     std::uint32_t tool_changes = 0;
 };
 
 /// Reads a whole program. Collects faults up to faults_max; never throws on content.
-/// Rotary words are degrees, linear ones mm (or inch after G20). Unlimited axes make the programmed
-/// turns, or at most half a turn with takes_short_way.
+/// Rotary words are degrees, linear ones mm or inch. What options.program leaves unknown is a fault
+/// where it would decide.
 [[nodiscard]] GcodeResult read_gcode(std::string_view text, const Machine& machine,
                                      const GcodeOptions& options);
+
+/// "read as: starts in mm; C programmed", or "read as written" without any.
+[[nodiscard]] std::string read_as_text(const std::vector<std::string>& read_as);
 
 /// Reads axis words such as "X0 Y-10.5 C90" (mm and degrees) into `positions`. Returns an empty
 /// text on success, else the fault.

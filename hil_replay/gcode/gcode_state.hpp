@@ -28,6 +28,7 @@ struct GcodeState {
     std::int32_t motion = 800;  // no motion mode until the program sets one
     std::int32_t plane = 170;
     bool is_inch = false;
+    bool is_unit_of_start = true;  // no G20 or G21 yet
     bool is_incremental = false;
     bool has_absolute_centers = false;
     bool is_inverse_time = false, is_per_revolution = false;

@@ -12,7 +12,7 @@
 namespace axg {
 
 bool ProgramFinder::open() {
-    return make_gcode_options(arguments_, machine_, options_) &&
+    return make_gcode_options(arguments_, machine_, settings_, options_) &&
            read_program_text(arguments_.program, text_);
 }
 

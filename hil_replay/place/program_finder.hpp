@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "core/machine/machine.hpp"
 #include "firmware_if/receiver/axis_receiver.hpp"
@@ -16,9 +17,9 @@ namespace axg {
 
 class ProgramFinder {
   public:
-    /// Both must outlive it.
-    ProgramFinder(const GcodeArguments& arguments, const Machine& machine)
-        : arguments_(arguments), machine_(machine) {}
+    /// Arguments and machine must outlive it.
+    ProgramFinder(const GcodeArguments& arguments, const Machine& machine, ProgramSettings settings)
+        : arguments_(arguments), machine_(machine), settings_(std::move(settings)) {}
 
     /// Checks the options and the program's file, before the first sample. False: stderr has the
     /// fault.
@@ -36,6 +37,7 @@ class ProgramFinder {
 
     const GcodeArguments& arguments_;
     const Machine& machine_;
+    const ProgramSettings settings_;
     GcodeOptions options_;
     std::string text_;
     bool is_read_ = false;

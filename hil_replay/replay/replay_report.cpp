@@ -185,6 +185,13 @@ void print_clearance_levels(const ReplayReport& report, std::FILE* words) {
                clearance_levels.queries_most);
 }
 
+/// What a proof of the trace proves: the program's motion only as it was read.
+std::string proven_of(const ProgramLines& lines) {
+    return lines.read_as.empty()  // a matched program need not be the one that ran
+               ? "  of this trace, whatever program made it\n"
+               : fmt::format("  of {}, {}\n", escaped(lines.program, 4096), lines.read_as);
+}
+
 const char* format_no_stop(bool is_stoppable, bool is_obeyed) {
     if (!is_stoppable) {
         return "\nno stop: every checked pair keeps its margin at all {} samples (proven)\n";
@@ -237,6 +244,9 @@ void print_end(const ReplayReport& report, Detail detail, std::FILE* words) {
         const bool is_obeyed = obeyed_by_refusal(report.loaded.machine).empty();
         fmt::print(words, fmt::runtime(format_no_stop(run.is_stoppable(), is_obeyed)),
                    run.is_stoppable() ? run.permits() : run.cycles().count());
+        if (is_obeyed || !run.is_stoppable()) {
+            fmt::print(words, "{}", proven_of(report.lines));
+        }
     }
 }
 

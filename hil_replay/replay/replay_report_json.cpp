@@ -207,6 +207,9 @@ ReplayDocument describe_replay(const ReplayReport& report) {
     add_end(report.end, out);
     if (!report.lines.is_empty()) {
         out["program"] = report.lines.program;
+        if (!report.lines.read_as.empty()) {
+            out["read_as"] = report.lines.read_as;
+        }
     }
     out.update(Json{{"machine", machine.name},
                     {"mode", run.is_stoppable() ? "stoppable" : "contact"},

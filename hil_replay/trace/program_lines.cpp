@@ -20,7 +20,7 @@
 namespace axg {
 namespace {
 
-constexpr std::string_view kTitle = "axguard program lines 2";
+constexpr std::string_view kTitle = "axguard program lines 3";
 constexpr std::size_t kBlockBytesMax = 200;
 constexpr std::size_t kProgramNameMax = 4096;
 constexpr std::size_t kFileBytesMax = 256U << 20U;
@@ -145,8 +145,9 @@ void add_blocks(ProgramLines& lines, std::string_view program_text) {
 
 std::string program_lines_text(const ProgramLines& lines) {
     std::string text = fmt::format(
-        "{}\nprogram {}\nprogram_crc32 {:08x}\ntrace_bytes {}\ntrace_crc32 {:08x}\n", kTitle,
-        on_one_line(lines.program), lines.program_crc, lines.trace_bytes, lines.trace_crc);
+        "{}\nprogram {}\nread_as {}\nprogram_crc32 {:08x}\ntrace_bytes {}\ntrace_crc32 {:08x}\n",
+        kTitle, on_one_line(lines.program), on_one_line(lines.read_as), lines.program_crc,
+        lines.trace_bytes, lines.trace_crc);
     for (const ProgramStep& step : lines.steps) {
         text += fmt::format("{} {} {}\n", step.time_us, step.line, step.block);
     }
@@ -159,14 +160,16 @@ std::string read_program_lines(const std::string& name, std::string_view text, P
                           ": no program lines: the file is damaged or was written by another "
                           "version. Run axguard simulate again.";
     ProgramLines lines;
-    std::string_view program, crc, bytes, trace_crc;
+    std::string_view program, read_as, crc, bytes, trace_crc;
     if (!take_checksum(text) || take_line(text) != kTitle || !take_key(text, "program ", program) ||
-        !take_key(text, "program_crc32 ", crc) || !take_key(text, "trace_bytes ", bytes) ||
-        !take_key(text, "trace_crc32 ", trace_crc) || !take_number(crc, lines.program_crc, 16) ||
-        !take_number(bytes, lines.trace_bytes) || !take_number(trace_crc, lines.trace_crc, 16)) {
+        !take_key(text, "read_as ", read_as) || !take_key(text, "program_crc32 ", crc) ||
+        !take_key(text, "trace_bytes ", bytes) || !take_key(text, "trace_crc32 ", trace_crc) ||
+        !take_number(crc, lines.program_crc, 16) || !take_number(bytes, lines.trace_bytes) ||
+        !take_number(trace_crc, lines.trace_crc, 16)) {
         return damaged;
     }
     lines.program = program;
+    lines.read_as = read_as;
     while (!text.empty()) {
         std::string_view line = take_line(text);
         ProgramStep step;

@@ -20,6 +20,7 @@ struct ProgramStep {
 
 struct ProgramLines {
     std::string program{};             // its file, as it was named
+    std::string read_as{};             // under which settings of the control
     std::uint32_t program_crc = 0;     // of its content
     std::uint64_t trace_bytes = 0;     // of the trace that the table belongs to
     std::uint32_t trace_crc = 0;       // crc32 of it

@@ -40,15 +40,16 @@ struct AblatedDrive {
 };
 
 /// Returns kExitClean, or another exit code after printing the fault to stderr.
-int read_inputs(const AblatedDrive& run, const Machine& machine, DriveOptions& options,
+int read_inputs(const AblatedDrive& run, const LoadedMachine& loaded, DriveOptions& options,
                 GcodeResult& reading) {
     const std::string bad_faults = read_faults(run.faults, options.faults);
     if (!bad_faults.empty()) {
         fmt::print(stderr, "--faults: {}\n", bad_faults);
         return kExitUsage;
     }
+    const Machine& machine = loaded.machine;
     GcodeOptions gcode;
-    if (!make_gcode_options(run.gcode, machine, gcode)) {
+    if (!make_gcode_options(run.gcode, machine, program_settings(loaded.source, machine), gcode)) {
         return kExitUsage;
     }
     if (!is_start_inside(machine, gcode.start) ||
@@ -70,7 +71,7 @@ int run_ablated(const AblatedDrive& run) {
     options.response_us = machine.deadline_us;
     options.time_us_max = static_cast<std::int64_t>(run.gcode.samples_max) * machine.can.sample_us;
     GcodeResult reading;
-    const int fault = read_inputs(run, machine, options, reading);
+    const int fault = read_inputs(run, loaded, options, reading);
     if (fault != kExitClean) {
         return fault;
     }

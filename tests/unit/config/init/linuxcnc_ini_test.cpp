@@ -55,6 +55,11 @@ MAX_LIMIT = 1e99
 MAX_ACCELERATION = 1200
 )";
 
+std::string test_mill_without_wrapping() {
+    std::string text = kMill;
+    return text.erase(text.find("WRAPPED_ROTARY"), std::string("WRAPPED_ROTARY = 1\n").size());
+}
+
 TEST(LinuxcncIni, AxesHaveTheTighterLimitsInMmAndDegrees) {
     const IniAxes ini = read_ini(kMill, "mill.ini");
     ASSERT_TRUE(ini.faults.empty()) << ini.faults[0];
@@ -202,6 +207,40 @@ TEST(LinuxcncIni, TheServoPeriodIsThatOfTheBoard) {
                                      wrong +
                                      "\", expected 50000 to 100000000, whole nanoseconds).");
     }
+}
+
+TEST(LinuxcncIni, WhatDecidesAProgramHasItsLine) {
+    const std::string text = std::string(kMill) +
+                             "[AXIS_C]\n[RS274NGC]\nPARAMETER_FILE = mill.var\n"
+                             "RS274NGC_STARTUP_CODE = G20 G64 P0.001\n"
+                             "CENTER_ARC_RADIUS_TOLERANCE_INCH = 0.0002\n"
+                             "DISABLE_FANUC_STYLE_SUB = 1\n";
+    const IniAxes ini = read_ini(text, "mill.ini",
+                                 {{"mill.var", "5161\t1.000000\n5163\t0.5\n5166\t90\n5183\t-2\n"}});
+    ASSERT_TRUE(ini.faults.empty()) << ini.faults[0];
+    std::string all;
+    for (const IniSetting& one : ini.program) {
+        all += one.key + (one.letter == 0 ? "" : std::string(".") + one.letter) + ' ' + one.value +
+               ' ' + one.source + '\n';
+    }
+    EXPECT_EQ(all,
+              "start_unit inch mill.ini:6: [TRAJ] LINEAR_UNITS = inch\n"
+              "startup_code \"G20 G64 P0.001\" mill.ini:38: [RS274NGC] RS274NGC_STARTUP_CODE = "
+              "G20 G64 P0.001\n"
+              "arc_tolerance_inch 0.0002 mill.ini:39: [RS274NGC] "
+              "CENTER_ARC_RADIUS_TOLERANCE_INCH = 0.0002\n"
+              "program_numbers false mill.ini:40: [RS274NGC] DISABLE_FANUC_STYLE_SUB = 1\n"
+              "g28.X 25.4 mill.ini:37: [RS274NGC] PARAMETER_FILE = mill.var, parameters 5161 on\n"
+              "g28.Z 12.7 mill.ini:37: [RS274NGC] PARAMETER_FILE = mill.var, parameters 5161 on\n"
+              "g28.C 90 mill.ini:37: [RS274NGC] PARAMETER_FILE = mill.var, parameters 5161 on\n"
+              "g30.Z -50.8 mill.ini:37: [RS274NGC] PARAMETER_FILE = mill.var, parameters 5181 "
+              "on\n");
+    // Without the file there are no stored positions, and without a word of it no wrapped axis.
+    const IniAxes none = read_ini(test_mill_without_wrapping(), "mill.ini");
+    ASSERT_EQ(none.program.size(), 2U);
+    EXPECT_EQ(none.program[1].key, "rotary");
+    EXPECT_EQ(none.program[1].letter, 'C');
+    EXPECT_EQ(none.program[1].value, "programmed");
 }
 
 TEST(LinuxcncIni, WhatIsWrongSaysWhere) {

@@ -18,7 +18,7 @@ TEST(MachineFaultsKeys, UnknownKeyIsNamedWithTheKnownOnes) {
                              "first_tool: 2")),
               "m:21: colour: unknown key (expected one of version, name, deadline_us, engine, "
               "program_speed_mm_min, axes, bodies, tools, first_tool, pairs, exclusions, can, "
-              "guard, output_line, capacities, cycle).\n");
+              "guard, output_line, capacities, cycle, program).\n");
 }
 
 // Nobody reads a quarter of a megabyte of faults: the first by their lines, and how many more.
@@ -47,7 +47,7 @@ TEST(MachineFaultsKeys, KeyInTheWrongCaseGetsTheNearestOne) {
     EXPECT_EQ(faults_of(with(kSmallMachine, "capacities:", "Capacities:")),
               "m:34: Capacities: unknown key (expected one of version, name, deadline_us, engine, "
               "program_speed_mm_min, axes, bodies, tools, first_tool, pairs, exclusions, can, "
-              "guard, output_line, capacities, cycle). Did you mean \"capacities\"?\n");
+              "guard, output_line, capacities, cycle, program). Did you mean \"capacities\"?\n");
 }
 
 TEST(MachineFaultsKeys, LookAlikeKeyIsSpelledOut) {
@@ -55,7 +55,7 @@ TEST(MachineFaultsKeys, LookAlikeKeyIsSpelledOut) {
               "m:2: n\320\260me: unknown key with the character U+0430, which is not ASCII "
               "(expected one of version, name, deadline_us, engine, program_speed_mm_min, axes, "
               "bodies, tools, first_tool, pairs, exclusions, can, guard, output_line, capacities, "
-              "cycle). Did you mean \"name\"?\n");
+              "cycle, program). Did you mean \"name\"?\n");
 }
 
 TEST(MachineFaultsKeys, RepeatedKeyIsRefused) {

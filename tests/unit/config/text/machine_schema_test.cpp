@@ -199,6 +199,7 @@ std::vector<MapPlace> maps() {
         {"pdo", "", with(drive_machine(), "{cob_id:", "{@: 1, cob_id:")},
         {"drive_velocity", "",
          with(drive_machine(), "velocity: {counts:", "velocity: {@: 1, counts:")},
+        {"", "program", with(s, "version: 1\n", "version: 1\nprogram: {@: 1}\n")},
         {"", "guard", with(s, "{promise:", "{@: 1, promise:")},
         {"", "capacities", with(s, "{node_pairs:", "{@: 1, node_pairs:")}};
 }

@@ -53,6 +53,51 @@ TEST_F(SimulateCommand, AFaultyProgramIsExit3WithAllFaultsAndNoTrace) {
     EXPECT_NE(err.find("reading stopped after 1 fault"), std::string::npos) << err;
 }
 
+// The same program and machine but for the section: refused, or read as the section says.
+TEST_F(SimulateCommand, TheMachineFileSaysWhatAProgramMeans) {
+    const std::string paper = test::content_of(kMachine);
+    const std::size_t at = paper.find("program: {");
+    const auto machine_with = [&](const std::string& section) {
+        const std::string rest = paper.substr(paper.find('\n', at) + 1);
+        return shop.write("machine.yaml", paper.substr(0, at) + section + "\n" + rest);
+    };
+    const std::string part = write("G90\nG0 X1\nC-200\nG28 Z0\nM2\n");
+    EXPECT_EQ(run(machine_with("") + " " + part + " -o " + trace), kExitInput);
+    EXPECT_NE(err.find(part + ":2: X: no G20 or G21 before this length"), std::string::npos) << err;
+    EXPECT_NE(err.find(part + ":3: C: the machine file has no program.rotary.C"), std::string::npos)
+        << err;
+    EXPECT_NE(err.find(part + ":4: G28: its stored position is unknown; state program.g28.Z"),
+              std::string::npos)
+        << err;
+    const std::string inch = machine_with(
+        "program: {start_unit: inch, rotary: {C: short}, g28: {Z: 40}, startup_code: G64}");
+    ASSERT_EQ(run(inch + " " + part + " -o " + trace), kExitClean) << err;
+    const std::string read_as = "read as: start-up code G64; starts in inch; C short; G28 Z40\n";
+    EXPECT_NE(out.find(part + ": " + read_as), std::string::npos) << out;
+    EXPECT_NE(test::content_of(trace + ".lines").find("\nread_as " + read_as), std::string::npos);
+    EXPECT_EQ(run(machine_with("") + " " + part + " -o " + trace + " --rotary short"), kExitInput);
+    EXPECT_EQ(err.find("program.rotary"), std::string::npos) << err;
+    EXPECT_EQ(run(machine_with("program: {rotary: {A: short, Q: short}, g28: {B: 1}}") + " " +
+                  part + " -o " + trace),
+              kExitInput);
+    EXPECT_NE(err.find("program.rotary.A: invalid value (found an axis with ends"),
+              std::string::npos)
+        << err;
+    EXPECT_NE(err.find("program.rotary.Q: unknown key"), std::string::npos) << err;
+}
+
+TEST_F(SimulateCommand, AProofStatesWhatItIsOf) {
+    const std::string part = write("G0 X10\nM2\n");
+    ASSERT_EQ(run(kMachine + " " + part + " -o " + trace), kExitClean) << err;
+    ASSERT_EQ(shop.run("replay " + kMachine + " " + trace + " --mode contact"), kExitClean) << err;
+    EXPECT_NE(out.find("(proven)\n  of " + part + ", read as: starts in mm\n"), std::string::npos)
+        << out;
+    std::filesystem::remove(trace + ".lines");
+    ASSERT_EQ(shop.run("replay " + kMachine + " " + trace + " --mode contact"), kExitClean) << err;
+    EXPECT_NE(out.find("(proven)\n  of this trace, whatever program made it\n"), std::string::npos)
+        << out;
+}
+
 TEST_F(SimulateCommand, WhatIsIgnoredIsEchoedInWordsAndJson) {
     const std::string part = write("M428 (tcp)\nG0 X1\nM2\n");
     ASSERT_EQ(run(kMachine + " " + part + " -o " + trace + " --ignore m428,M429 --json"),

@@ -138,6 +138,82 @@ TEST(GcodeHome, GoesByTheWayPointAndMovesNamedAxesOnly) {
     EXPECT_NE(fault_of("G28 G1 X1 F5\n").find("G28: conflicts"), std::string::npos);
 }
 
+TEST(GcodeHome, GoesToTheStoredPositions) {
+    GcodeOptions options;
+    options.program.g28[kZ] = 50;
+    options.program.g30 = {};
+    options.program.g30[kX] = -12.5;
+    options.program.g30[kA] = -90 * kTestRadPerDegree;
+    EXPECT_EQ(end_of("G0 Z-9\nG91 G28 Z0\n", options)[kZ], 50);
+    EXPECT_EQ(end_of("G0 X3\nG30 X4\n", options)[kX], -12.5);
+    EXPECT_DOUBLE_EQ(end_of("G20 G30 A-1\n", options)[kA], -90 * kTestRadPerDegree);
+    EXPECT_EQ(read("G21 G28 Z0\nG30 X4\n", options).read_as,
+              (std::vector<std::string>{"G28 Z50", "G30 X-12.5"}));
+    EXPECT_NE(fault_of("G0 X1\nG30 Y4\n", options)
+                  .find("2: G30: its stored position is unknown; state program.g30.Y in the "
+                        "machine file, or write G53 G0"),
+              std::string::npos);
+    EXPECT_NE(fault_of("G30\n", options).find("program.g30.Y"), std::string::npos);
+}
+
+// What the file of the machine leaves open is an error where it decides, and only there.
+TEST(GcodeSettings, TheUnitOfTheStartIsStatedOrNotNeeded) {
+    GcodeOptions options;
+    options.program = {};
+    const char* const kLacks = "no G20 or G21 before this length";
+    EXPECT_NE(fault_of("G90\nG0 X2\nY3\n", options).find("2: X: no G20 or G21 before"),
+              std::string::npos);
+    EXPECT_NE(fault_of("G1 F200\nG21 X2\n", options).find(kLacks), std::string::npos);
+    EXPECT_NE(fault_of("G64 P0.1\nG21\n", options).find(kLacks), std::string::npos);
+    EXPECT_NE(fault_of("G10 L2 P1 Z4\nG21\n", options).find(kLacks), std::string::npos);
+    EXPECT_EQ(faults_of(read("G0 X0 A-9\nG93 G1 A-3 F2\nG21 G94 G1 X2 F9\n", options)), "");
+    EXPECT_EQ(read("G20 F9\n", options).read_as, std::vector<std::string>{"starts in mm"})
+        << "F counts in the unit before its block";
+    options.program.starts_in_inch = true;
+    EXPECT_DOUBLE_EQ(end_of("G0 X2\n", options)[kX], 50.8);
+    EXPECT_EQ(read("G0 X2\nX3\n", options).read_as, std::vector<std::string>{"starts in inch"});
+    EXPECT_TRUE(read("G21 G0 X2\n", options).read_as.empty());
+}
+
+TEST(GcodeSettings, AnEndlessAxisNeedsARuleWhereRulesDiffer) {
+    GcodeOptions options;
+    options.program.rotary = {};
+    EXPECT_EQ(end_of("G0 C170\nC20\nG91 C900\n", options)[kC], 920 * kTestRadPerDegree);
+    const GcodeResult far = read("G0 C170\nC-20\nC170\n", options);
+    EXPECT_NE(faults_of(far).find("2: C: the machine file has no program.rotary.C, which decides "
+                                  "how far this endless axis turns"),
+              std::string::npos);
+    EXPECT_EQ(far.faults.size(), 1U) << "once";
+    options.program.rotary.fill(RotaryRule::programmed);
+    EXPECT_EQ(read("G0 C170\nC-20\n", options).read_as, std::vector<std::string>{"C programmed"});
+}
+
+TEST(GcodeSettings, StartUpCodeTolerancesAndNumbersFollowTheControl) {
+    GcodeOptions options;
+    options.program.starts_in_inch.reset();
+    options.program.startup_code = "g20 g64 p.01";
+    const GcodeResult inch = read("G0 X2\nX3\n", options);
+    EXPECT_EQ(faults_of(inch), "") << "P counts in the unit of its own block";
+    options.program.startup_code = "G20 G91";
+    const Program program = program_of("G0 X1\nX1\n", options);
+    EXPECT_DOUBLE_EQ(program.moves[1].target[kX], 50.8);
+    EXPECT_EQ(read("M2\n", options).read_as, std::vector<std::string>{"start-up code G20 G91"});
+    options.program.startup_code = "G90 M52 P1";
+    EXPECT_EQ(read("M2\n", options).read_as,
+              std::vector<std::string>{"start-up code G90 M52 P1 (without M52 P1)"});
+    options.program.startup_code = "G87";
+    EXPECT_NE(fault_of("M2\n", options).find("(program.startup_code of the machine file)"),
+              std::string::npos);
+    options = {};
+    options.program.arc_tolerance_mm = 0.001;
+    EXPECT_EQ(faults_of(read("G0 X10\nG3 X0 Y10.009 I-10 F9\n", options)), "");
+    EXPECT_NE(fault_of("G0 X10\nG3 X0 Y10.011 I-10 F9\n", options).find("does not close"),
+              std::string::npos);
+    options.program.takes_program_numbers = false;
+    EXPECT_NE(fault_of("O12\nM2\n", options).find("program.program_numbers: false"),
+              std::string::npos);
+}
+
 TEST(GcodeArcs, CentreAndRadiusFormsGiveTheCircle) {
     // A quarter, counter-clockwise, about (0, 0).
     const Arc quarter = program_of("G0 X10\nG3 X0 Y10 I-10 F100\n").moves[1].arc;
@@ -392,7 +468,7 @@ TEST(GcodeProgram, IsNotLongerThanItsLimit) {
 TEST(GcodeRotary, EndlessAxesGoTheProgrammedWayOrTheShortOne) {
     const auto turns_to = [](const char* text, bool is_short) {
         GcodeOptions options;
-        options.takes_short_way = is_short;
+        options.program.rotary.fill(is_short ? RotaryRule::shortest : RotaryRule::programmed);
         return end_of(text, options)[kC] / kTestRadPerDegree;
     };
     EXPECT_NEAR(turns_to("G0 C350\nC10\n", false), 10, 1e-9);
@@ -400,7 +476,7 @@ TEST(GcodeRotary, EndlessAxesGoTheProgrammedWayOrTheShortOne) {
     EXPECT_NEAR(turns_to("G0 C350\n", true), -10, 1e-9);
     EXPECT_NEAR(turns_to("G0 C10\nG91 C350\n", true), 360, 1e-9) << "steps are as they are";
     GcodeOptions options;
-    options.takes_short_way = true;
+    options.program.rotary.fill(RotaryRule::shortest);
     EXPECT_EQ(program_of("G0 C10\nC370\nC-350\n", options).moves.size(), 1U) << "it is there";
     EXPECT_NEAR(end_of("G0 A-100\n", options)[kA] / kTestRadPerDegree, -100, 1e-9)
         << "an axis with ends goes between them";

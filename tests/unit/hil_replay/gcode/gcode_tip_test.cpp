@@ -233,7 +233,7 @@ TEST(GcodeTip, ASingularPlaceIsRefusedWithItsLine) {
 }
 
 TEST(GcodeTip, MachineZeroAndControlDoNotGoTogether) {
-    EXPECT_NE(fault_of("M428\nG28\n").find("2: G28: machine zero means axes"), std::string::npos);
+    EXPECT_NE(fault_of("M428\nG28\n").find("2: G28: its position means axes"), std::string::npos);
     EXPECT_EQ(faults_of(read("M428\nM429\nG28\n")), "");
 }
 
