@@ -298,7 +298,10 @@ class Reader {
         for (const IniAxis& axis : out_.axes) {
             const std::string section = std::string("AXIS_") + axis.letter;
             const Value* const wrapped = find(section, "WRAPPED_ROTARY");
-            if (axis.is_unlimited && (wrapped == nullptr || wrapped->text != "1")) {
+            if (axis.is_unlimited && wrapped != nullptr && wrapped->text == "1") {
+                set("rotary", axis.letter, "wrapped",
+                    source_of(*wrapped, section, "WRAPPED_ROTARY"));
+            } else if (axis.is_unlimited) {
                 set("rotary", axis.letter, "programmed",
                     name_ + ": [" + section + "] WRAPPED_ROTARY is not 1");
             }

@@ -19,6 +19,7 @@ enum class RotaryRule : std::uint8_t {
     unknown,
     programmed,  // to that position, turn by turn
     shortest,    // less than half a turn
+    wrapped,     // LinuxCNC's WRAPPED_ROTARY: to the angle, up or, with a minus, down
 };
 
 /// A position of the control; an axis that the file does not state is empty. By axis.

@@ -48,16 +48,17 @@ void read_position(MapReader& section, const char* key, MachineDraft& draft, Sto
 }
 
 void read_rotary(MapReader& section, MachineDraft& draft, ProgramSettings& out) {
-    read_axis_map(section, "rotary", draft,
-                  [&](MapReader& letters, const std::string& letter, std::uint32_t axis) {
-                      constexpr std::array<std::string_view, 2> kRules{"programmed", "short"};
-                      std::size_t rule = 0;
-                      if (!draft.machine.axes[axis].unlimited) {
-                          letters.report(letter, "an axis with ends", "an endless axis");
-                      } else if (letters.choice(letter, Need::required, kRules, rule)) {
-                          out.rotary[axis] = static_cast<RotaryRule>(rule + 1);
-                      }
-                  });
+    read_axis_map(
+        section, "rotary", draft,
+        [&](MapReader& letters, const std::string& letter, std::uint32_t axis) {
+            constexpr std::array<std::string_view, 3> kRules{"programmed", "short", "wrapped"};
+            std::size_t rule = 0;
+            if (!draft.machine.axes[axis].unlimited) {
+                letters.report(letter, "an axis with ends", "an endless axis");
+            } else if (letters.choice(letter, Need::required, kRules, rule)) {
+                out.rotary[axis] = static_cast<RotaryRule>(rule + 1);
+            }
+        });
 }
 
 }  // namespace

@@ -69,8 +69,9 @@ bool make_gcode_options(const GcodeArguments& arguments, const Machine& machine,
                         const ProgramSettings& settings, GcodeOptions& options) {
     options.program = settings;
     if (!arguments.rotary.empty()) {
-        options.program.rotary.fill(arguments.rotary == "short" ? RotaryRule::shortest
-                                                                : RotaryRule::programmed);
+        options.program.rotary.fill(arguments.rotary == "short"     ? RotaryRule::shortest
+                                    : arguments.rotary == "wrapped" ? RotaryRule::wrapped
+                                                                    : RotaryRule::programmed);
     }
     options.start = default_start(machine);
     options.faults_max = arguments.faults_max;
@@ -192,9 +193,9 @@ std::vector<Option> add_gcode_settings(const Command& command, GcodeArguments& a
             .shows_default(),
         command
             .add_option("--rotary", arguments.rotary,
-                        "absolute words of endless axes: programmed = full turns, short = less "
-                        "than half a turn [default: program.rotary of the machine file]")
-            .one_of({"programmed", "short"}),
+                        "absolute words of endless axes: full turns, less than half a turn, or up "
+                        "and with a minus down [default: program.rotary of the machine file]")
+            .one_of({"programmed", "short", "wrapped"}),
         command.add_option("--part", arguments.part,
                            "body that carries the part, for tool centre point control [default: "
                            "the body that most axes move]"),

@@ -29,6 +29,10 @@ GcodeInterpreter::GcodeInterpreter(const Machine& machine, const GcodeOptions& o
     state_.position = options.start;
     state_.spindle_tool = machine.first_tool;
     state_.work_offsets = options.work_offsets;
+    state_.word_position = options.start;
+    for (std::uint32_t axis = 0; axis < machine.axes.size(); ++axis) {
+        state_.word_offset[axis] = offset_of(axis);
+    }
     state_.is_inch = options.program.starts_in_inch.value_or(false);
     result_.program.start = options.start;
     result_.program.start_tool = machine.first_tool;
@@ -62,6 +66,7 @@ void GcodeInterpreter::run(const GcodeBlock& block) {
     set_modes();
     use_lengths();
     write_offsets();
+    forget_words();
     move();
     stop();
 }
@@ -196,6 +201,18 @@ void GcodeInterpreter::set_modes() {
     }
     if (block.code(arc_distance) != -1) {
         state_.has_absolute_centers = block.code(arc_distance) == 901;
+    }
+}
+
+void GcodeInterpreter::forget_words() {
+    const std::int32_t code = block_->code(non_modal);
+    const bool writes = code == 100 || code == 520 || (code >= 920 && code <= 923) ||
+                        block_->code(offsets) != -1 || block_->code(tool_length) != -1 ||
+                        block_->code(units) != -1;
+    for (std::uint32_t axis = 0; writes && axis < machine_.axes.size(); ++axis) {
+        if (offset_of(axis) != 0) {
+            state_.word_position[axis] = NAN;  // no position is equal
+        }
     }
 }
 

@@ -37,7 +37,13 @@ class GcodeInterpreter {
     void use_start_unit(char letter);
     void use_lengths();
     /// Where an absolute word takes an endless axis, from its target turn by turn.
-    double by_rotary_rule(char letter, std::uint32_t axis, double target);
+    /// @param word_deg  as written: its sign may be a direction
+    double by_rotary_rule(char letter, std::uint32_t axis, double target, double word_deg);
+    /// A block that changes an offset computes the position in all of them anew, as sums.
+    void forget_words();
+    /// Notes that an absolute word, and no sum, leaves the axis at this target.
+    void keep_word(std::uint32_t axis, double target);
+    double wrapped_target(char letter, std::uint32_t axis, double target, double word_deg);
     void set_feed_and_tool();
     /// The machine's tool number for a T or H word; nothing, and a fault, if there is none.
     std::optional<std::uint16_t> tool_number(char letter);

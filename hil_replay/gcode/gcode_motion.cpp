@@ -112,7 +112,8 @@ bool GcodeInterpreter::set_target(AxisPositions& target) {
             target[index] = value + offset_of(index);
         }
         if (!state_.is_incremental && machine_.axes[index].unlimited) {
-            target[index] = by_rotary_rule(letter, index, target[index]);
+            target[index] = by_rotary_rule(letter, index, target[index], block_->value(letter));
+            keep_word(index, target[index]);
         }
     }
     if (state_.motion != 20 && state_.motion != 30) {  // an arc judges its ends together
@@ -121,22 +122,33 @@ bool GcodeInterpreter::set_target(AxisPositions& target) {
     return result_.faults.size() == faults_before;
 }
 
-double GcodeInterpreter::by_rotary_rule(char letter, std::uint32_t axis, double target) {
+double GcodeInterpreter::by_rotary_rule(char letter, std::uint32_t axis, double target,
+                                        double word_deg) {
     const RotaryRule rule = options_.program.rotary[axis];
     const double from = state_.position[axis];
     const double way = std::remainder(target - from, 2 * kPi);
     const bool is_half = kPi - std::abs(way) < kSamePlaceRad;
-    if (!is_half && std::abs(from + way - target) < kSamePlaceRad) {
-        return target;  // every rule goes there
-    }
+    const bool is_short = !is_half && std::abs(from + way - target) < kSamePlaceRad;
+    const bool is_there = is_short && std::abs(way) < kSamePlaceRad;
     const std::string word(1, letter);
     if (rule == RotaryRule::unknown) {
-        if (std::find(unruled_.begin(), unruled_.end(), axis) == unruled_.end()) {
-            unruled_.push_back(axis);
-            fault(word, "the machine file has no program.rotary." + word +
-                            ", which decides how far this endless axis turns; state it there, or "
-                            "pass --rotary");
+        const bool is_upwards = way >= 0 && !std::signbit(word_deg) && word_deg < 360;
+        const bool is_reported =
+            std::find(unruled_.begin(), unruled_.end(), axis) != unruled_.end();
+        if (is_there || (is_short && is_upwards) || is_reported) {
+            return target;  // every rule goes there
         }
+        unruled_.push_back(axis);
+        fault(word, "the machine file has no program.rotary." + word +
+                        ", which decides how far this endless axis turns; state it there, or pass "
+                        "--rotary");
+        return target;
+    }
+    if (rule == RotaryRule::wrapped) {
+        assume(word + " wrapped");
+        return wrapped_target(letter, axis, target, word_deg);
+    }
+    if (is_short) {
         return target;
     }
     assume(word + (rule == RotaryRule::programmed ? " programmed" : " short"));
@@ -149,6 +161,50 @@ double GcodeInterpreter::by_rotary_rule(char letter, std::uint32_t axis, double 
               "pass --rotary programmed");
     }
     return from + way;
+}
+
+void GcodeInterpreter::keep_word(std::uint32_t axis, double target) {
+    const bool is_sum = block_->is_machine || block_->code(non_modal) != -1;
+    if (!is_sum || offset_of(axis) == 0) {
+        state_.word_position[axis] = target;
+        state_.word_offset[axis] = offset_of(axis);
+    }
+}
+
+/// Source: LinuxCNC 2.9, interp_find.cc, unwrap_rotary, in degrees of the program's coordinates.
+double GcodeInterpreter::wrapped_target(char letter, std::uint32_t axis, double target,
+                                        double word_deg) {
+    constexpr double kTurnDeg = 360, kTinyDeg = 1e-8;
+    const double offset = offset_of(axis);
+    const double position = (state_.position[axis] - offset) / kRadPerDegree;
+    const double turns = std::round(position / kTurnDeg) * kTurnDeg;
+    const bool is_at_turn = std::abs(position - turns) < kTinyDeg;
+    const double from = is_at_turn ? turns : position;
+    const double angle = std::abs((target - offset) / kRadPerDegree);
+    const std::string word(1, letter);
+    if (!(std::abs(word_deg) < kTurnDeg)) {
+        fault(word, print("found %.6g, expected an angle between -360 and 360 on a wrapped axis",
+                          word_deg));
+        return target;
+    }
+    const bool is_there = std::abs(std::remainder(angle - from, kTurnDeg)) < kTinyDeg;
+    const bool is_sum = state_.position[axis] != state_.word_position[axis] ||
+                        offset != state_.word_offset[axis] || (block_->is_machine && offset != 0);
+    if (is_sum && (is_there || (is_at_turn && angle >= kTurnDeg))) {
+        fault(word,
+              "the axis is where it is by sums of other words: rounding would decide between a "
+              "turn and none; write another angle before");
+    }
+    if (is_there) {
+        return state_.position[axis];
+    }
+    double result = angle + std::floor(from / kTurnDeg) * kTurnDeg;
+    if (!std::signbit(word_deg) && result < from) {
+        result += kTurnDeg;
+    } else if (std::signbit(word_deg) && result > from) {
+        result -= kTurnDeg;
+    }
+    return result * kRadPerDegree + offset;
 }
 
 void GcodeInterpreter::settle(AxisPositions& target) const {
@@ -323,6 +379,10 @@ void GcodeInterpreter::go_home() {
         const double shown = *stored[axis] / (is_rotary ? kRadPerDegree : 1.0);
         assume(word + " " + letter + print("%.6g", shown));
         home.target[axis] = *stored[axis];
+        if (options_.program.rotary[axis] == RotaryRule::wrapped && machine_.axes[axis].unlimited) {
+            home.target[axis] = wrapped_target(letter, axis, *stored[axis], shown);
+            keep_word(axis, home.target[axis]);
+        }
     }
     append(home);
 }

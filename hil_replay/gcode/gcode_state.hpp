@@ -55,6 +55,9 @@ struct GcodeState {
     // The actual position in the same coordinates while it differs: from a change of the tool
     // offset under control to the next move.
     std::optional<AxisPositions> standing_at;
+    // Where its last absolute word left each axis, and the offset then: LinuxCNC has that very
+    // number, and not a sum that differs by rounding.
+    AxisPositions word_position{}, word_offset{};
     bool has_ended = false;
 };
 

@@ -73,11 +73,12 @@ void print_move(const Machine& machine, const Move& move) {
     std::printf("\n");
 }
 
-int print_moves(const char* path, const Machine& machine) {
+int print_moves(const char* path, const Machine& machine, RotaryRule rule) {
     std::ifstream file(path, std::ios::binary);
     const std::string text(std::istreambuf_iterator<char>(file), {});
     GcodeOptions options;
     options.block_delete = BlockDelete::run;
+    options.program.rotary.fill(rule);
     const GcodeResult result = read_gcode(text, machine, options);
     for (const ProgramFault& fault : result.faults) {
         std::fprintf(stderr, "%s:%u: %s: %s\n", path, fault.line, fault.word.c_str(),
@@ -96,9 +97,11 @@ int print_moves(const char* path, const Machine& machine) {
 }  // namespace axg
 
 int main(int argc, char** argv) {
-    const bool is_tip = argc == 3 && std::string_view(argv[1]) == "--tip";
-    if (argc != 2 && !is_tip) {
+    const std::string_view option = argc == 3 ? argv[1] : "";
+    if (argc != 2 && option != "--tip" && option != "--wrapped") {
         return 2;
     }
-    return axg::print_moves(argv[argc - 1], is_tip ? axg::tip_machine() : axg::boundless_machine());
+    return axg::print_moves(
+        argv[argc - 1], option == "--tip" ? axg::tip_machine() : axg::boundless_machine(),
+        option == "--wrapped" ? axg::RotaryRule::wrapped : axg::RotaryRule::programmed);
 }

@@ -225,6 +225,7 @@ TEST(LinuxcncIni, WhatDecidesAProgramHasItsLine) {
     }
     EXPECT_EQ(all,
               "start_unit inch mill.ini:6: [TRAJ] LINEAR_UNITS = inch\n"
+              "rotary.C wrapped mill.ini:31: [AXIS_C] WRAPPED_ROTARY = 1\n"
               "startup_code \"G20 G64 P0.001\" mill.ini:38: [RS274NGC] RS274NGC_STARTUP_CODE = "
               "G20 G64 P0.001\n"
               "arc_tolerance_inch 0.0002 mill.ini:39: [RS274NGC] "

@@ -149,6 +149,11 @@ TEST_F(Commands, InitTakesTheAxesOfAnIniFile) {
                     "  sample_us: 977  # SERVO_PERIOD is 976562 ns; 0.045 % of the 1 % that "
                     "the period may be off\n"))
         << text;
+    const std::string ini = path("meshes/mill.ini");
+    EXPECT_TRUE(has(text, "program:\n  start_unit: inch  # " + ini +
+                              ":3: [TRAJ] LINEAR_UNITS = inch\n  rotary: {C: wrapped}  # " + ini +
+                              ":14: [AXIS_C] WRAPPED_ROTARY = 1\n"))
+        << text;
     EXPECT_EQ(machine.axes[0].jerk_max, kNoJerkLimit) << "LinuxCNC limits no jerk";
     EXPECT_TRUE(has(text, "# W of the INI file: give it to the body that it moves\n")) << text;
     // Meshes elsewhere, and what is wrong with either.

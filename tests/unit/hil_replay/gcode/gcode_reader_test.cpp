@@ -178,7 +178,7 @@ TEST(GcodeSettings, TheUnitOfTheStartIsStatedOrNotNeeded) {
 TEST(GcodeSettings, AnEndlessAxisNeedsARuleWhereRulesDiffer) {
     GcodeOptions options;
     options.program.rotary = {};
-    EXPECT_EQ(end_of("G0 C170\nC20\nG91 C900\n", options)[kC], 920 * kTestRadPerDegree);
+    EXPECT_EQ(end_of("G0 C20\nC170\nG91 C900\n", options)[kC], 1070 * kTestRadPerDegree);
     const GcodeResult far = read("G0 C170\nC-20\nC170\n", options);
     EXPECT_NE(faults_of(far).find("2: C: the machine file has no program.rotary.C, which decides "
                                   "how far this endless axis turns"),
@@ -483,6 +483,31 @@ TEST(GcodeRotary, EndlessAxesGoTheProgrammedWayOrTheShortOne) {
     EXPECT_NE(fault_of("G0 C90\nC-90\n", options).find("C: half a turn: "), std::string::npos);
     options.work_offsets[0][kC] = 90 * kTestRadPerDegree;
     EXPECT_NEAR(end_of("G0 C180\n", options)[kC] / kTestRadPerDegree, -90, 1e-9);
+}
+
+// As rs274 has them with [AXIS_C] WRAPPED_ROTARY = 1: the oracle compares random ones.
+TEST(GcodeRotary, WrappedAxesTurnUpwardsOrWithAMinusDownwards) {
+    GcodeOptions options;
+    options.program.rotary.fill(RotaryRule::wrapped);
+    const auto turns = [&](const char* text) {
+        return end_of(text, options)[kC] / kTestRadPerDegree;
+    };
+    EXPECT_NEAR(turns("G0 C20\n"), 20, 1e-9);
+    EXPECT_NEAR(turns("G0 C20\nC340\nC20\n"), 380, 1e-9);
+    EXPECT_NEAR(turns("G0 C20\nC340\nC20\nC-340\n"), 340, 1e-9);
+    EXPECT_NEAR(turns("G0 C-120\n"), -240, 1e-9);
+    EXPECT_NEAR(turns("G0 C20\nG91 C-50\nG90 C20\n"), 20, 1e-9) << "steps are as they are";
+    EXPECT_NEAR(turns("G0 C-90\nG10 L2 P1 C30\nG0 C10\n"), 40, 1e-9);
+    EXPECT_NEAR(turns("G10 L2 P1 C30\nG0 C10\nG53 G0 C-20\n"), -280, 1e-9);
+    EXPECT_NEAR(turns("G0 C100\nG28 C110\n"), 360, 1e-9);
+    EXPECT_EQ(program_of("G0 C10.1\nC10.1\nC-10.1\n", options).moves.size(), 1U);
+    EXPECT_NE(fault_of("G0 C360\n", options).find("C: found 360, expected an angle between"),
+              std::string::npos);
+    EXPECT_NE(fault_of("G0 C10\nG91 C.1\nG90 C10.1\n", options).find("rounding would decide"),
+              std::string::npos);
+    EXPECT_NEAR(end_of("G0 A-90\n", options)[kA] / kTestRadPerDegree, -90, 1e-9)
+        << "an axis with ends";
+    EXPECT_EQ(read("G0 C5\n", options).read_as, std::vector<std::string>{"C wrapped"});
 }
 
 TEST(GcodeProgram, BlockDeleteIsTheUsersChoice) {
