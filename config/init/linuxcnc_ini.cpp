@@ -18,9 +18,10 @@
 namespace axg {
 namespace {
 
-constexpr double kNoLimit = 1e9;        // LinuxCNC's default limits are +-1e99
-constexpr double kLinearMm = 8388.607;  // what a frame can hold; farther limits are no machine's
-constexpr double kTurnsDeg = 10 * 360;  // a rotary axis that may go farther does not end
+constexpr double kNoLimit = 1e9;         // LinuxCNC's default limits are +-1e99
+constexpr double kLinearMm = 8388.607;   // what a frame can hold; farther limits are no machine's
+constexpr double kRotaryDeg = 838.8607;  // the same
+constexpr double kTurnsDeg = 10 * 360;   // a rotary axis that may go farther does not end
 constexpr std::string_view kAxisLetters = "XYZABCUVW";
 constexpr double kPeriodNsMin = 50e3, kPeriodNsMax = 100e6;  // what can.sample_us can be
 constexpr std::uint32_t kIncludesMax = 64;  // an include that includes itself ends here
@@ -258,6 +259,7 @@ class Reader {
     }
 
     void take_axis(char letter) {
+        const std::size_t faults_before = out_.faults.size();
         IniAxis& axis = out_.axes.emplace_back();
         axis.letter = letter;
         axis.is_rotary = letter >= 'A' && letter <= 'C';
@@ -276,6 +278,9 @@ class Reader {
         const bool has_end = (axis.min && *axis.min > -kTurnsDeg) ||  //
                              (axis.max && *axis.max < kTurnsDeg);
         axis.is_unlimited = axis.is_rotary && (is_wrapped || !has_end);
+        if (out_.faults.size() == faults_before) {
+            check_ends(std::string("AXIS_") + letter, axis);
+        }
     }
 
     static std::string source_of(const Value& value, const std::string& section,
@@ -399,9 +404,47 @@ class Reader {
         }
     }
 
+    /// Programs count A, B and C in degrees and the others in the unit of length, whatever the
+    /// joint.
+    void check_type(const std::string& section, const IniAxis& axis) {
+        const Value* const type = find(section, "TYPE");
+        const std::string wanted = axis.is_rotary ? "ANGULAR" : "LINEAR";
+        if (type == nullptr || upper(without_comment(type->text)) == wanted) {
+            return;
+        }
+        const std::string word = upper(without_comment(type->text));
+        if (word == "LINEAR" || word == "ANGULAR") {
+            fault(section, "TYPE", type,
+                  wanted + ": programs count " + axis.letter +
+                      (axis.is_rotary
+                           ? " in degrees. Give a slide the letter U, V or W, and a second motor "
+                             "the letter of its axis, as in coordinates=XYYZ"
+                           : " in the unit of length"));
+        }
+    }
+
+    /// A rotary axis with one end: the other cannot be farther than frames reach.
+    void check_ends(const std::string& section, IniAxis& axis) {
+        const bool is_far_up = axis.max && *axis.max > kRotaryDeg;
+        const bool is_far_down = axis.min && *axis.min < -kRotaryDeg;
+        if (axis.is_rotary && !axis.is_unlimited && (is_far_up || is_far_down)) {
+            const std::string key = is_far_up ? "MAX_LIMIT" : "MIN_LIMIT";
+            const Value* value = find(section, key);
+            for (std::size_t joint = 0; value == nullptr && joint < joints_.size(); ++joint) {
+                if (joints_[joint] == axis.letter) {
+                    value = find("JOINT_" + std::to_string(joint), key);
+                }
+            }
+            fault(section, key, value,
+                  "an end within 838 degrees, or none on either side within ten turns: an endless "
+                  "axis");
+        }
+    }
+
     void take(const std::string& section, IniAxis& axis) {
         const auto least = [](double a, double b) { return std::min(a, b); };
         const auto most = [](double a, double b) { return std::max(a, b); };
+        check_type(section, axis);
         const double limit = axis.is_rotary ? kNoLimit : kLinearMm;
         number(section, "MIN_LIMIT", false, axis.min, most, limit);
         number(section, "MAX_LIMIT", false, axis.max, least, limit);

@@ -274,6 +274,18 @@ TEST(LinuxcncIni, WhatIsWrongSaysWhere) {
     EXPECT_EQ(
         faults("[TRAJ]\nCOORDINATES = X\nLINEAR_UNITS = furlong\n"),
         "m.ini:3: [TRAJ] LINEAR_UNITS: invalid value (found \"furlong\", expected mm or inch).\n");
+    EXPECT_EQ(
+        faults("[TRAJ]\nCOORDINATES = XA\nLINEAR_UNITS = mm\n[JOINT_1]\nTYPE = LINEAR\n"),
+        "m.ini:5: [JOINT_1] TYPE: invalid value (found \"LINEAR\", expected ANGULAR: programs "
+        "count A in degrees. Give a slide the letter U, V or W, and a second motor the letter "
+        "of its axis, as in coordinates=XYYZ).\n");
+    EXPECT_EQ(faults("[TRAJ]\nCOORDINATES = XA\nLINEAR_UNITS = mm\n[AXIS_A]\nMIN_LIMIT = -5\n"
+                     "MAX_LIMIT = 99999\n"),
+              "m.ini:6: [AXIS_A] MAX_LIMIT: invalid value (found \"99999\", expected an end within "
+              "838 degrees, or none on either side within ten turns: an endless axis).\n");
+    EXPECT_EQ(faults("[TRAJ]\nCOORDINATES = XA\nLINEAR_UNITS = mm\n[JOINT_1]\nTYPE = ANGULAR\n"
+                     "MIN_LIMIT = -99999\nMAX_LIMIT = 99999\n"),
+              "");
     EXPECT_EQ(faults("[TRAJ\nCOORDINATES = X\n[\n]\n= 3\n").empty(), false) << "and no crash";
 }
 
