@@ -246,7 +246,7 @@ class SlowerFeed : public Advice {
             (void)shop.write("slower.yaml", text);
             program = shop.write(
                 "slower.ngc",
-                is_limit ? kGuessed : fmt::format("G21 G90\nG0 X60\nG1 Z-300 F{}\n", feed));
+                is_limit ? kGuessed : fmt::format("G21 G90\nG0 X60\nG1 Z-300 F{}\nM2\n", feed));
             std::filesystem::remove(shop.file("trace.log"));
             const Json end = run(GetParam().is_driven, "slower.yaml", " --advice-s 0");
             const double left_mm = why_of(end)["available_mm"].get<double>();
