@@ -12,7 +12,7 @@
 namespace axg::test {
 namespace {
 
-std::string faults_of(const std::string& section) {
+std::string faults_of_section(const std::string& section) {
     Machine machine;
     std::string all;
     for (const ConfigFault& fault : parse_machine(kSmallMachine + section, "m", machine)) {
@@ -68,11 +68,11 @@ TEST(MachineCycle, APlanThatWasChosenGoesBeforeTheFile) {
 }
 
 TEST(MachineCycle, WhatIsRefusedIsNamed) {
-    EXPECT_EQ(faults_of("cycle: often\n").find("m:"), 0U);
-    EXPECT_NE(faults_of("cycle: often\n")
+    EXPECT_EQ(faults_of_section("cycle: often\n").find("m:"), 0U);
+    EXPECT_NE(faults_of_section("cycle: often\n")
                   .find("cycle: invalid value (found \"often\", expected auto, or a map"),
               std::string::npos)
-        << faults_of("cycle: often\n");
+        << faults_of_section("cycle: often\n");
     for (const char* section :
          {"cycle: 3\n", "cycle: [3]\n", "cycle: {stages: 1}\n", "cycle: {stages: 4}\n",
           "cycle: {queries: 1}\n", "cycle: {queries: 65537}\n", "cycle: {rounds: 7}\n",
@@ -80,7 +80,7 @@ TEST(MachineCycle, WhatIsRefusedIsNamed) {
           "cycle: {lists: {leaf_pairs: 1048577}}\n", "cycle: {lists: {box_rows: 31}}\n",
           "cycle: {lists: {triangle_pairs: 31}}\n", "cycle: {lists: {rechecks: -1}}\n",
           "cycle: {lists: {pairs: 9}}\n"}) {
-        EXPECT_NE(faults_of(section), "") << section;
+        EXPECT_NE(faults_of_section(section), "") << section;
     }
 }
 
