@@ -310,7 +310,7 @@ std::string pairs_text(const std::vector<RoleGuess>& roles) {
     return text;
 }
 
-/// The section `program`, each line with its source; nothing without an INI file.
+/// The section `program`, each line with its source; without an INI file its form, as a comment.
 std::string program_text(const std::vector<IniSetting>& settings,
                          const std::vector<RoleGuess>& roles) {
     std::string text;
@@ -335,7 +335,9 @@ std::string program_text(const std::vector<IniSetting>& settings,
             text += fmt::format("  {}: {{{}}}  # {}\n", first.key, values, first.source);
         }
     }
-    return text.empty() ? text : "\n# What decides the meaning of a program.\nprogram:\n" + text;
+    return text.empty() ? "\n# What decides the meaning of a program; simulate names a key that it "
+                          "needs.\n# program: {start_unit: mm, rotary: {C: programmed}}\n"
+                        : "\n# What decides the meaning of a program.\nprogram:\n" + text;
 }
 
 /// Rounds to microseconds; the rest uses part of the 1 % that every proof allows the period.

@@ -36,5 +36,6 @@ step 0 git apply -p0 real-machine-edit.patch
 step 0 axguard check my-machine.yaml
 step 3 axguard simulate my-machine.yaml impeller_xyzac.ngc -o impeller.log
 step 0 axguard simulate my-machine.yaml impeller_xyzac.ngc -o impeller.log --ignore M428,M429 \
+    --rotary programmed \
     --work-offset "G54 Z-100"
 step "0 11" axguard replay my-machine.yaml impeller.log --mode contact
