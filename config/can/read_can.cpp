@@ -19,17 +19,14 @@ namespace axg {
 namespace {
 
 constexpr WholeRange kCanId{0x001, 0x7FF};
-constexpr std::uint32_t kClassicalToolMax = 255;  // one byte of the last frame
-constexpr std::uint32_t kAgePeriodsMax = 10;      // of positions at their latch
+constexpr std::uint32_t kAgePeriodsMax = 10;  // of positions at their latch
 constexpr std::uint32_t kHashesIn = 0x582, kHashesOut = 0x602;
 
-/// Largest position in a frame of our formats: 24 bits of 1 um or 0.0001 degrees, 32 bits of 0.1 um
-/// or 0.0001.
+/// Largest position in a frame of our formats.
 struct FrameReach {
     double mm, deg;
 };
-constexpr FrameReach kClassicalReach{8388.607, 838.8607};
-constexpr FrameReach kFdReach{214748.3647, 214748.3647};
+constexpr double kCountsPerDegree = 1.0e4;  // of own frames
 
 std::string hex(std::uint32_t id) {
     std::array<char, 16> buffer{};
@@ -385,11 +382,13 @@ void read_hashes(MapReader& reader, CanLayout& can) {
 /// A position beyond the range of a frame would arrive as another position.
 void check_reach(MapReader& top, MachineDraft& draft) {
     const Machine& machine = draft.machine;
-    const bool fd = machine.can.format == CanFormat::fd;
-    const FrameReach reach = fd ? kFdReach : kClassicalReach;
-    if (fd && machine.axes.size() > kFdAxesMax) {
+    const WireFormat& wire = wire_of(machine.can);
+    const double most = wire.position_most;
+    const FrameReach reach{most / wire.counts_per_mm, most / kCountsPerDegree};
+    const bool has_wider = wire.position_most < INT32_MAX;
+    if (machine.axes.size() > wire.axes_max) {
         top.report("can", std::to_string(machine.axes.size()) + " axes in one FD frame",
-                   "at most " + std::to_string(kFdAxesMax) + ", or format: classical");
+                   "at most " + std::to_string(wire.axes_max) + ", or format: classical");
     }
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
         const Axis& axis = machine.axes[i];
@@ -403,10 +402,10 @@ void check_reach(MapReader& top, MachineDraft& draft) {
             "axes." + escaped(axis.name, kNameLengthMax) + ".travel_" + (rotary ? "deg" : "mm"),
             "travel beyond the range of the CAN frames",
             "at most " + shown(rotary ? reach.deg : reach.mm) + (rotary ? " degrees" : " mm") +
-                " either way, or can: {format: " + (fd ? "signals" : "fd") + '}');
+                " either way, or can: {format: " + (has_wider ? "fd" : "signals") + '}');
     }
-    for (std::size_t i = 0; !fd && i < machine.tools.size(); ++i) {
-        if (machine.tools[i].number > kClassicalToolMax) {
+    for (std::size_t i = 0; i < machine.tools.size(); ++i) {
+        if (machine.tools[i].number > wire.tool_most) {
             draft.faults.add(draft.tool_lines[i],
                              "tools." + std::to_string(machine.tools[i].number) + ".number",
                              std::to_string(machine.tools[i].number) + " with can format classical",

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a guard may conclude from axis frames of each format: one row a format. Other rooms read a
-// column and compare no formats, so that a new format is a new row, with a codec in
-// firmware_if/protocol. Claim: rows stand in the order of CanFormat (static_assert), and the
-// columns agree with the frames (tests/unit/firmware_if/protocol/wire_format_test.cpp).
+// column; only two programs choose a format by its name (trace_period.cpp, simulate_command.cpp).
+// A new format is a row here, at the end since hashes have its number, a codec in
+// firmware_if/protocol (axis_frames.cpp, axis_layout.cpp), its name in config/can/read_can.cpp and
+// in the schema, and its places in hil_replay/check/check_frames.cpp. Claim: rows stand in the
+// order of CanFormat (static_assert), and the columns agree with the frames
+// (tests/unit/firmware_if/protocol/wire_format_test.cpp).
 #pragma once
 
 #include <array>
@@ -39,12 +42,14 @@ struct WireFormat {
     const char* name = "";  // as can.format states it; "dbc" files contain signals
     SampleMark mark = SampleMark::index;
     RestReport rest = RestReport::mode;
-    std::uint8_t slots_a_frame = 0;    // of own frames: one an axis, then one for the status
-    std::uint8_t axes_max = kAxesMax;  // of own frames
-    std::uint8_t index_modulus = 1;    // of sample indexes in own frames
-    bool has_sender_clock = false;     // frames also state the time of the sender
-    bool has_look_ahead = false;       // the board may announce its path
-    double counts_per_mm = 1.0e3;      // of own frames
+    std::uint8_t slots_a_frame = 0;         // of own frames: one an axis, then one for the status
+    std::uint8_t axes_max = kAxesMax;       // of own frames
+    std::uint8_t index_modulus = 1;         // of sample indexes in own frames
+    bool has_sender_clock = false;          // frames also state the time of the sender
+    bool has_look_ahead = false;            // the board may announce its path
+    double counts_per_mm = 1.0e3;           // of own frames
+    std::int32_t position_most = 0x7FFFFF;  // counts of own frames, either way
+    std::uint16_t tool_most = 255;          // number that own frames carry
     std::uint8_t permit_samples_most = 15;
     std::uint8_t stale_samples_least = 3;  // default of can.stale_after_us
     std::uint8_t latched_age_samples = 0;  // default of can.latched_age_us, largest
@@ -64,7 +69,9 @@ inline constexpr std::array<WireFormat, 4> kWireFormats{{
      .index_modulus = kSyncCounterMax,
      .has_sender_clock = true,
      .has_look_ahead = true,
-     .counts_per_mm = 1.0e4},
+     .counts_per_mm = 1.0e4,
+     .position_most = INT32_MAX,
+     .tool_most = UINT16_MAX},
     {.format = CanFormat::signals,
      .name = "signals",
      .mark = SampleMark::arrival,

@@ -12,7 +12,6 @@ namespace {
 constexpr double kRadPerDeg = 0x1.1df46a2529d39p-6;
 constexpr std::uint32_t kNonceMax = 0xFFFFFF;
 constexpr std::uint8_t kSessionCounters = 16;
-constexpr std::uint16_t kClassicalToolMax = 255;  // the frames have its low byte alone
 
 std::uint16_t lap_of(std::uint64_t number) noexcept {
     return static_cast<std::uint16_t>(number / kSyncCounterMax);
@@ -27,7 +26,7 @@ bool takes_samples(const Machine& machine) noexcept {
 SampleFrames::SampleFrames(const Machine& machine) noexcept
     : encoder_(machine, {.says_session = false}),
       takes_samples_(axg::takes_samples(machine)),
-      tool_max_(machine.can.format == CanFormat::classical ? kClassicalToolMax : UINT16_MAX) {}
+      tool_max_(wire_of(machine.can).tool_most) {}
 
 /// As a board has to: at once, every 100 ms, and with each lap and nonce.
 void SampleFrames::put_session(const axg_sample& sample, std::uint32_t& count) noexcept {

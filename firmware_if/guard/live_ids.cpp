@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "core/base/assert.hpp"
+
 namespace axg {
 
 std::uint32_t live_ids(const Machine& machine, std::span<std::uint32_t> out) noexcept {
@@ -10,9 +12,8 @@ std::uint32_t live_ids(const Machine& machine, std::span<std::uint32_t> out) noe
     const AxisFrameSet set = make_frame_set(machine);
     std::uint32_t count = 0;
     const auto add = [&](std::uint32_t id) {
-        if (count < out.size()) {
-            out[count++] = id;
-        }
+        AXG_ASSERT(count < out.size());  // without an id its frames would never be seen
+        out[count++] = id;
     };
     for (std::uint32_t i = 0; i < set.frame_count; ++i) {
         add(set.ids[i]);

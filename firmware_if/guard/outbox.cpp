@@ -91,9 +91,9 @@ Outbox::Rank Outbox::next() const noexcept {
     if (slots_[kPlain].is_waiting) {
         return kPlain;
     }
-    for (const Rank rank : {kEmergency, kHeartbeat, kHash, kStatus, kHints}) {
-        if (slots_[rank].is_waiting && !background_.is_on) {
-            return rank;
+    for (std::uint8_t rank = kEmergency; rank < kRanks && !background_.is_on; ++rank) {
+        if (slots_[rank].is_waiting) {
+            return static_cast<Rank>(rank);
         }
     }
     return kRanks;
