@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The machine in plain data: axes, a tree of bodies, checked pairs, tools. Valid by construction:
 // config/ built it. Directions and pivots are stated in machine coordinates at the zero pose (all
-// axes at 0), so that a body's placement is the product of its chain's motions:
-// docs/theory/architecture.md.
+// axes at 0; docs/reference/machine-file.md), so that a body's placement is the product of its
+// chain's motions (kinematics.hpp).
 #pragma once
 
 #include <array>
