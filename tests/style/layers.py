@@ -3,7 +3,8 @@
 """Who may include whom. Data flows one way: a layer that looked back would no longer be testable
 with arrays and a counter for time. Houses (core/, config/, ...) first; then their rooms, which are
 the folders below: no circle between rooms, no include of a room that the CMakeLists.txt does not
-link, at most forty files a room, and each room named by the README of its house."""
+link, at most forty files a room, each room named by the README of its house, and in the README of
+each room the rooms that it links."""
 import collections
 import pathlib
 import re
@@ -116,6 +117,7 @@ def fault_of_file(name, path):
 # Forms of an include that nobody needs, and that this check would not read.
 ODD = re.compile(r"^\s*(%:|#\s*(import|include_next)\b|#\s*include\s*[^\s\"<]|#\s*\\$)|"
                  r"^\s*#\s*include.*\\$", re.M)
+MAY_INCLUDE_ITEM = re.compile(r"^- May include:(.*?)(?=^- |^\s*$|\Z)", re.S | re.M)
 OTHER_SUFFIXES = re.compile(r"\.(hh|hxx|h\+\+|ipp|tpp|inc|cc|cxx)$")
 
 
@@ -199,11 +201,33 @@ def unnamed_rooms(files, text_of):
             yield f"{readme}: does not name its room {inside}"
 
 
+def readme_faults(files, text_of):
+    """Rooms without a README, and READMEs that leave out a room which the CMakeLists.txt links."""
+    linked = {}
+    for name in files:
+        if room_of(name) is not None and name.endswith("/CMakeLists.txt"):
+            if re.search(r"^\s*axg_room\(", text_of(name), re.M):
+                linked[room_of(name)] = linked_rooms(text_of(name))
+    for room, links in sorted(linked.items()):
+        readme = f"{room}/README.md"
+        item = MAY_INCLUDE_ITEM.search(text_of(readme)) if readme in files else None
+        if item is None:
+            yield f"{readme}: no such file, or no item \"- May include:\" in it"
+            continue
+        named = set(re.findall(r"`([a-z_]+/[a-z_/]*)`", item.group(1)))
+        if re.search(r"\brooms\s+below\b", item.group(1)):
+            named |= {below for other in named for below in reachable(linked, other)}
+        for other in sorted(links - named):
+            if other.partition("/")[0] + "/" not in named:
+                yield f"{readme}: \"May include:\" leaves out {other}, which the room links"
+
+
 def main():
     root = pathlib.Path(sys.argv[1])
     files = tracked_files(root)
     faults = list(room_faults(files, lambda name: read_text(root, name)))
     faults += unnamed_rooms(files, lambda name: read_text(root, name))
+    faults += readme_faults(files, lambda name: read_text(root, name))
     for name in files:
         folder = name.split("/")[0]
         if is_cpp(name) and folder in FOLDERS:

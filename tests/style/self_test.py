@@ -120,6 +120,17 @@ def layers_notice():
     for words, bad in [("Rooms: `a`.", False), ("Rooms: `b`.", True), ("Room a.", True)]:
         texts = {"core/README.md": words, "core/a/x.hpp": ""}
         expect(f"layers: {words}", bool(list(layers.unnamed_rooms(texts, texts.get))) == bad)
+    rooms = {"core/b/CMakeLists.txt": "axg_room(ROOMS core/a)", "core/b/README.md":
+             "- May include: `core/`.", "firmware_if/a/CMakeLists.txt": "# no axg_room()",
+             "core/c/CMakeLists.txt": "axg_room(ROOMS core/a core/b)"}
+    for words, bad in [("- May include: `core/a`,\n  `core/b`; fmt.", False),
+                       ("- May include: `core/b` and the rooms\n  below it.", False),
+                       ("- May include: `core/`.", False), ("- May include: `core/b`.", True),
+                       ("- May include: `core/b`.\n- Start with `core/a`.", True),
+                       ("- May include `core/a`, `core/b`.", True)]:
+        texts = rooms | {"core/c/README.md": words}
+        expect(f"layers: {words}", bool(list(layers.readme_faults(texts, texts.get))) == bad)
+    expect("layers: a room without a README", bool(list(layers.readme_faults(rooms, rooms.get))))
 
 
 def banned_calls_notice():
