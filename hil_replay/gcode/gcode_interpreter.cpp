@@ -241,14 +241,15 @@ void GcodeInterpreter::use_start_unit(char letter) {
     if (!state_.is_unit_of_start) {
         return;
     }
-    // F counts in the unit before its block. Beside G20 or G21 it is no error: speed, not place.
-    if (options_.program.starts_in_inch || block_->code(units) != -1) {
+    if (options_.program.starts_in_inch) {
         assume(state_.is_inch ? "starts in inch" : "starts in mm");
         return;
     }
     fault(std::string(1, letter),
-          "no G20 or G21 before this length, and the machine file has no program.start_unit; state "
-          "it there, or write G20 or G21");
+          letter == 'F' ? "no G20 or G21 in a block before this feed, and the machine file has no "
+                          "program.start_unit; state it there, or write G20 or G21 in a line before"
+                        : "no G20 or G21 before this length, and the machine file has no "
+                          "program.start_unit; state it there, or write G20 or G21");
     state_.is_unit_of_start = false;  // said once
 }
 

@@ -62,6 +62,7 @@ class Reading {
             result_.notes.push_back(std::to_string(first_return_) +
                                     ": a carriage return alone ends the line; LinuxCNC reads it as "
                                     "a blank: convert the line ends");
+            result_.read_as.emplace_back("CR alone ends a line");
         }
         run_startup_code();
         std::size_t next = 0;

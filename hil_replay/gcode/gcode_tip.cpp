@@ -53,6 +53,9 @@ std::optional<AxisPositions> GcodeInterpreter::tool_offset(std::int32_t code) {
     std::optional<std::uint16_t> number = state_.spindle_tool;
     if (block_->has('H')) {
         number = tool_number('H');
+        if (number == 0) {  // LinuxCNC 2.9, find_tool_index: that of the spindle
+            number = state_.spindle_tool;
+        }
     }
     if (!number) {
         return std::nullopt;

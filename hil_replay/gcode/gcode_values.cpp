@@ -20,6 +20,21 @@ constexpr int kDepthMax = 50;    // brackets within brackets
 constexpr const char* kWantedNumber = "expected a number after the letter, such as 12, -0.5 or .25";
 constexpr double kRadPerDegree = kPi / 180.0;
 
+// Named parameters that LinuxCNC 2.9 has by itself (interp_namedparams.cc): they exist, and no
+// value is known here.
+constexpr std::string_view kNamesOfControl =
+    " _ABS_A _ABS_B _ABS_C _ABS_X _ABS_Y _ABS_Z _ABSOLUTE _ADAPTIVE_FEED _CALL_LEVEL "
+    "_CCOMP _COORD_SYSTEM _CURRENT_POCKET _CURRENT_TOOL _FEED _FEED_HOLD _FEED_OVERRIDE "
+    "_FLOOD _IJK_ABSOLUTE_MODE _IMPERIAL _INCREMENTAL _INVERSE_TIME _LATHE_DIAMETER_MODE "
+    "_LATHE_RADIUS_MODE _LINE _METRIC _METRIC_MACHINE _MIST _MOTION_MODE _PLANE "
+    "_REMAP_LEVEL _RETRACT_OLD_Z _RETRACT_R_PLANE _RPM _SELECTED_POCKET _SELECTED_TOOL "
+    "_SPEED_OVERRIDE _SPINDLE_CSS_MODE _SPINDLE_CW _SPINDLE_ON _SPINDLE_RPM_MODE _TASK "
+    "_TOOL_OFFSET _UNITS_PER_MINUTE _UNITS_PER_REV _VALUE _VALUE_RETURNED _VMAJOR _VMINOR ";
+
+bool is_of_control(const std::string& name) {
+    return kNamesOfControl.find(' ' + name + ' ') != std::string_view::npos;
+}
+
 bool is_number_char(char c) {
     return (c >= '0' && c <= '9') || c == '.' || c == '+' || c == '-';
 }
@@ -276,7 +291,13 @@ std::optional<double> GcodeValueReader::exists() {
     if (!asked || !take("]")) {
         return refuse("EXISTS: expected EXISTS[#<name>]");
     }
-    return parameters_->named(*asked) ? 1.0 : 0.0;
+    if (parameters_->named(*asked) || is_of_control(*asked)) {
+        return 1.0;
+    }
+    if (asked->starts_with("_HAL[") || asked->starts_with("_INI[")) {
+        return refuse("EXISTS: pins and INI keys of the control are unknown here");
+    }
+    return 0.0;
 }
 
 std::optional<std::string> GcodeValueReader::name() {

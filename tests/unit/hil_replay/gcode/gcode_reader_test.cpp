@@ -30,7 +30,9 @@ TEST(GcodeLexer, LinesEndWithEitherCharacterOrBoth) {
     EXPECT_EQ(read("M3\r\nM5\rM2\r").notes,
               std::vector<std::string>{"2: a carriage return alone ends the line; LinuxCNC reads "
                                        "it as a blank: convert the line ends"});
+    EXPECT_EQ(read("M3\r\nM5\rM2\r").read_as, std::vector<std::string>{"CR alone ends a line"});
     EXPECT_TRUE(read("M3\r\nM5\r\nM2\r\n").notes.empty());
+    EXPECT_TRUE(read("M3\r\nM5\r\nM2\r\n").read_as.empty());
 }
 
 TEST(GcodeLexer, WhatIsNoWordSaysSo) {
@@ -91,7 +93,8 @@ TEST(GcodeTools, LengthComesFromTheMachineFile) {
     EXPECT_EQ(end_of("T2 M6\nG43 G0 Z10\n")[kZ], 90.0) << "the tool in the spindle";
     EXPECT_EQ(end_of("G43 G0 Z10\n")[kZ], 60.0) << "the machine's first tool";
     EXPECT_EQ(end_of("G43 H2\nG49 G0 Z10\n")[kZ], 10.0);
-    EXPECT_EQ(end_of("G43 H0 G0 Z10\n")[kZ], 10.0);
+    EXPECT_EQ(end_of("G43 H0 G0 Z10\n")[kZ], 60.0) << "H0: the tool in the spindle";
+    EXPECT_EQ(end_of("T2 M6\nG43 H0 G0 Z10\n")[kZ], 90.0);
     EXPECT_EQ(end_of("G43 H2 G0 X1\n")[kZ], 0.0) << "the offset itself moves nothing";
     EXPECT_NE(fault_of("G43 H7\n").find("H7: the machine file has no tool 7"), std::string::npos);
     EXPECT_NE(fault_of("T7\n").find("T7: the machine file has no tool 7"), std::string::npos);
@@ -104,6 +107,18 @@ TEST(GcodeTools, LengthComesFromTheMachineFile) {
     ASSERT_EQ(program.moves.size(), 1U);
     EXPECT_EQ(program.moves[0].kind, MoveKind::tool_change);
     EXPECT_EQ(program.moves[0].tool, 2);
+}
+
+// rs274 2.9 takes the first branch for each of these.
+TEST(GcodeParameters, NamesOfTheControlExist) {
+    for (const char* const name : {"_metric", "_task", "_feed", "_x", "_value"}) {
+        EXPECT_EQ(end_of("o1 if [EXISTS[#<" + std::string(name) + ">]]\nG0 X4\no1 endif\n")[kX],
+                  4.0)
+            << name;
+    }
+    EXPECT_TRUE(read("o1 if [EXISTS[#<_mine>]]\nG0 X4\no1 endif\n").program.moves.empty());
+    EXPECT_NE(fault_of("o1 if [EXISTS[#<_ini[A]B>]]\nG0 X4\no1 endif\n").find("EXISTS: pins and"),
+              std::string::npos);
 }
 
 TEST(GcodeFeed, MissingOrWrongIsAnError) {
@@ -163,11 +178,13 @@ TEST(GcodeSettings, TheUnitOfTheStartIsStatedOrNotNeeded) {
     const char* const kLacks = "no G20 or G21 before this length";
     EXPECT_NE(fault_of("G90\nG0 X2\nY3\n", options).find("2: X: no G20 or G21 before"),
               std::string::npos);
-    EXPECT_NE(fault_of("G1 F200\nG21 X2\n", options).find(kLacks), std::string::npos);
+    EXPECT_NE(fault_of("G1 F200\nG21 X2\n", options).find("1: F: no G20 or G21 in a block before"),
+              std::string::npos);
     EXPECT_NE(fault_of("G64 P0.1\nG21\n", options).find(kLacks), std::string::npos);
     EXPECT_NE(fault_of("G10 L2 P1 Z4\nG21\n", options).find(kLacks), std::string::npos);
-    EXPECT_EQ(faults_of(read("G0 X0 A-9\nG93 G1 A-3 F2\nG21 G94 G1 X2 F9\n", options)), "");
-    EXPECT_EQ(read("G20 F9\n", options).read_as, std::vector<std::string>{"starts in mm"})
+    EXPECT_EQ(faults_of(read("G0 X0 A-9\nG93 G1 A-3 F2\nG21\nG94 G1 X2 F9\n", options)), "");
+    EXPECT_NE(fault_of("G20 F9\n", options).find("1: F: no G20 or G21 in a block before"),
+              std::string::npos)
         << "F counts in the unit before its block";
     options.program.starts_in_inch = true;
     EXPECT_DOUBLE_EQ(end_of("G0 X2\n", options)[kX], 50.8);
