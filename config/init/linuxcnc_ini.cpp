@@ -274,7 +274,7 @@ class Reader {
             }
         }
         const Value* wrapped = find(std::string("AXIS_") + letter, "WRAPPED_ROTARY");
-        const bool is_wrapped = wrapped != nullptr && wrapped->text == "1";
+        const bool is_wrapped = wrapped != nullptr && is_switched_on(wrapped->text);
         const bool has_end = (axis.min && *axis.min > -kTurnsDeg) ||  //
                              (axis.max && *axis.max < kTurnsDeg);
         axis.is_unlimited = axis.is_rotary && (is_wrapped || !has_end);
@@ -289,6 +289,14 @@ class Reader {
                " = " + escaped(value.text, 200);
     }
 
+    /// As LinuxCNC reads it: an integer, and not 0.
+    static bool is_switched_on(std::string_view text) {
+        int value = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        return error == std::errc() && end == text.data() + text.size() && value != 0;
+    }
+
+    void doubt(std::string text) { out_.program_doubts.push_back(std::move(text)); }
     void set(std::string key, char letter, std::string value, std::string source) {
         out_.program.push_back({std::move(key), letter, std::move(value), std::move(source)});
     }
@@ -303,31 +311,45 @@ class Reader {
         for (const IniAxis& axis : out_.axes) {
             const std::string section = std::string("AXIS_") + axis.letter;
             const Value* const wrapped = find(section, "WRAPPED_ROTARY");
-            if (axis.is_unlimited && wrapped != nullptr && wrapped->text == "1") {
+            if (axis.is_unlimited && wrapped != nullptr && is_switched_on(wrapped->text)) {
                 set("rotary", axis.letter, "wrapped",
                     source_of(*wrapped, section, "WRAPPED_ROTARY"));
             } else if (axis.is_unlimited) {
                 set("rotary", axis.letter, "programmed",
-                    name_ + ": [" + section + "] WRAPPED_ROTARY is not 1");
+                    name_ + ": [" + section + "] WRAPPED_ROTARY is not on");
             }
         }
         constexpr const char* kSection = "RS274NGC";
-        if (const Value* const code = find(kSection, "RS274NGC_STARTUP_CODE")) {
+        const Value* const code = find(kSection, "RS274NGC_STARTUP_CODE");
+        if (code != nullptr && !trimmed(code->text).empty()) {
             set("startup_code", 0, quoted(code->text, 250),
                 source_of(*code, kSection, "RS274NGC_STARTUP_CODE"));
         }
         for (const char* const unit : {"MM", "INCH"}) {
             const std::string key = std::string("CENTER_ARC_RADIUS_TOLERANCE_") + unit;
             const Value* const value = find(kSection, key);
-            if (value != nullptr && number_of(without_comment(value->text))) {
-                set(std::string("arc_tolerance_") + (*unit == 'M' ? "mm" : "inch"), 0,
+            if (value == nullptr) {
+                continue;
+            }
+            // LinuxCNC keeps its own one in place of a smaller or a larger value than these.
+            const bool is_mm = *unit == 'M';
+            const double least = is_mm ? 0.001 : 0.00004;
+            const double most = is_mm ? 0.028284271247461901 : 0.0028284271247461901;
+            const std::optional<double> read = number_of(without_comment(value->text));
+            if (read && *read >= least && *read <= most) {
+                set(is_mm ? "arc_tolerance_mm" : "arc_tolerance_inch", 0,
                     std::string(without_comment(value->text)), source_of(*value, kSection, key));
+            } else {
+                doubt(source_of(*value, kSection, key) + ": LinuxCNC keeps its own tolerance");
             }
         }
         const Value* const fanuc = find(kSection, "DISABLE_FANUC_STYLE_SUB");
         if (fanuc != nullptr && without_comment(fanuc->text) == "1") {
             set("program_numbers", 0, "false",
                 source_of(*fanuc, kSection, "DISABLE_FANUC_STYLE_SUB"));
+        }
+        if (const Value* const remap = find(kSection, "REMAP")) {
+            doubt(source_of(*remap, kSection, "REMAP") + ": simulate reads the word itself");
         }
         read_stored_positions();
     }
@@ -340,10 +362,17 @@ class Reader {
         }
         const std::string name(without_comment(value->text));
         const NamedFile file = files_(name, kIncludeBytesMax);
-        if (!file.got.empty()) {
-            return;  // LinuxCNC makes it at its first start
-        }
         const std::string source = source_of(*value, "RS274NGC", "PARAMETER_FILE");
+        if (!file.got.empty()) {  // LinuxCNC makes it at its first start
+            doubt(source + ": cannot be read: G28 and G30 stay unknown");
+            return;
+        }
+        if (const auto system = parameter(file.text, 5220); system && *system != 1) {
+            doubt(source + ": parameter 5220: programs start in another work offset than G54");
+        }
+        if (const auto shift = parameter(file.text, 5210); shift && *shift != 0) {
+            doubt(source + ": parameter 5210: G92 is on when programs start");
+        }
         for (const auto& [key, first] : {std::pair{"g28", 5161}, std::pair{"g30", 5181}}) {
             for (const IniAxis& axis : out_.axes) {
                 const auto place = static_cast<int>(kAxisLetters.find(axis.letter));

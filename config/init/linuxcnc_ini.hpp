@@ -37,6 +37,7 @@ struct IniAxes {
     std::vector<IniAxis> axes;                    // in the order of COORDINATES, each letter once
     std::optional<std::int64_t> servo_period_ns;  // [EMCMOT] SERVO_PERIOD
     std::vector<IniSetting> program{};            // keys together
+    std::vector<std::string> program_doubts{};    // what decides a program and is in no key
     std::vector<std::string> faults;              // "machine.ini:12: [AXIS_X] MAX_LIMIT: ..."
 };
 

@@ -311,9 +311,12 @@ std::string pairs_text(const std::vector<RoleGuess>& roles) {
 }
 
 /// The section `program`, each line with its source; without an INI file its form, as a comment.
-std::string program_text(const std::vector<IniSetting>& settings,
-                         const std::vector<RoleGuess>& roles) {
-    std::string text;
+std::string program_text(const IniAxes& ini, const std::vector<RoleGuess>& roles) {
+    const std::vector<IniSetting>& settings = ini.program;
+    std::string doubts, text;
+    for (const std::string& doubt : ini.program_doubts) {
+        doubts += fmt::format("# {}: {}\n", kGuessMark, doubt);
+    }
     for (std::size_t i = 0; i < settings.size(); ++i) {
         const IniSetting& first = settings[i];
         if (first.letter == 0) {
@@ -335,9 +338,11 @@ std::string program_text(const std::vector<IniSetting>& settings,
             text += fmt::format("  {}: {{{}}}  # {}\n", first.key, values, first.source);
         }
     }
-    return text.empty() ? "\n# What decides the meaning of a program; simulate names a key that it "
-                          "needs.\n# program: {start_unit: mm, rotary: {C: programmed}}\n"
-                        : "\n# What decides the meaning of a program.\nprogram:\n" + text;
+    const std::string section = text.empty()
+                                    ? "; simulate names a key that it needs.\n"
+                                      "# program: {start_unit: mm, rotary: {C: programmed}}\n"
+                                    : ".\nprogram:\n" + text;
+    return "\n" + doubts + "# What decides the meaning of a program" + section;
 }
 
 /// Rounds to microseconds; the rest uses part of the 1 % that every proof allows the period.
@@ -360,7 +365,7 @@ std::string machine_file_text(const std::string& name, const std::vector<Surveye
                               const std::vector<RoleGuess>& roles, const IniAxes& ini) {
     const std::int64_t period_ns = ini.servo_period_ns.value_or(0);
     std::string text = fmt::format("{}name: {}\n", kHead + 1, quoted(name, 128));
-    text += axes_text(roles, ini.axes) + program_text(ini.program, roles) + kBodiesHead;
+    text += axes_text(roles, ini.axes) + program_text(ini, roles) + kBodiesHead;
     for (const RoleGuess& role : roles) {
         text += body_text(role, meshes[role.file], roles);
     }

@@ -244,6 +244,60 @@ TEST(LinuxcncIni, WhatDecidesAProgramHasItsLine) {
     EXPECT_EQ(none.program[1].value, "programmed");
 }
 
+/// The value of a key that the mill's INI makes with more lines, or "none".
+std::string program_value(const std::string& more, const std::string& key) {
+    const IniAxes ini = read_ini(std::string(kMill) + more, "mill.ini", {});
+    for (const IniSetting& one : ini.program) {
+        if (one.key == key) {
+            return one.value;
+        }
+    }
+    return "none";
+}
+
+// As the interpreter reads them: rs274 2.9 refuses a tolerance above its own, and says so.
+TEST(LinuxcncIni, SwitchesAndTolerancesAreThoseOfTheInterpreter) {
+    for (const char* const on : {"1", "2", "-1", "01"}) {
+        std::string text = kMill;
+        text.replace(text.find("ROTARY = 1"), 10, std::string("ROTARY = ") + on);
+        EXPECT_EQ(read_ini(text, "m.ini", {}).program[1].value, "wrapped") << on;
+    }
+    for (const char* const off : {"0", "TRUE", "1.0", "0x1"}) {
+        std::string text = kMill;
+        text.replace(text.find("ROTARY = 1"), 10, std::string("ROTARY = ") + off);
+        EXPECT_EQ(read_ini(text, "m.ini", {}).program[1].value, "programmed") << off;
+    }
+    const std::string key = "[RS274NGC]\nCENTER_ARC_RADIUS_TOLERANCE_MM = ";
+    EXPECT_EQ(program_value(key + "0.02\n", "arc_tolerance_mm"), "0.02");
+    for (const char* const wrong : {"0.0283", "0.5", "0", "abc"}) {
+        EXPECT_EQ(program_value(key + wrong + "\n", "arc_tolerance_mm"), "none") << wrong;
+    }
+    EXPECT_EQ(program_value("[RS274NGC]\nRS274NGC_STARTUP_CODE =\n", "startup_code"), "none");
+}
+
+TEST(LinuxcncIni, WhatNoKeyCanStateIsADoubt) {
+    const auto doubts = [](const std::string& more,
+                           const std::map<std::string, std::string>& files) {
+        std::string out;
+        for (const std::string& doubt :
+             read_ini(std::string(kMill) + more, "mill.ini", files).program_doubts) {
+            out += doubt + '\n';
+        }
+        return out;
+    };
+    const std::string file = "[RS274NGC]\nPARAMETER_FILE = mill.var\n";
+    EXPECT_EQ(doubts(file, {{"mill.var", "5210\t0\n5220\t1\n"}}), "");
+    EXPECT_NE(doubts(file, {{"mill.var", "5210\t1\n5220\t2\n"}}).find("5220: programs start in"),
+              std::string::npos);
+    EXPECT_NE(doubts(file, {{"mill.var", "5210\t1\n5220\t2\n"}}).find("5210: G92 is on"),
+              std::string::npos);
+    EXPECT_NE(doubts(file, {}).find("mill.var: cannot be read"), std::string::npos);
+    EXPECT_NE(doubts("[RS274NGC]\nREMAP = M6 ngc=change\n", {}).find("the word itself"),
+              std::string::npos);
+    EXPECT_NE(doubts("[RS274NGC]\nCENTER_ARC_RADIUS_TOLERANCE_MM = 0.5\n", {}).find("its own"),
+              std::string::npos);
+}
+
 TEST(LinuxcncIni, WhatIsWrongSaysWhere) {
     const auto faults = [](const std::string& text) {
         std::string out;
