@@ -31,7 +31,8 @@ bool is_same_stop(const Machine& machine, const StopEvent& stop, const RunEnd& d
 /// The guard's verdict on a sample depends on the 16 strides before it, so a guard that begins with
 /// the last seconds stops at the same sample; whether it does is run first. The settings limit no
 /// figure below what the whole trace shows: no earlier sample breaks a limit of theirs.
-std::optional<Advice> advise_by_trace(const ReplayAdvice& advice) {
+/// @param left_mm  out: the distance that the stop of the trace leaves
+std::optional<Advice> advise_by_trace(const ReplayAdvice& advice, double& left_mm) {
     const StopEvent& stop = advice.stop;
     const std::int64_t before_us = std::llround(advice.seconds * 1e6);
     const TraceRun run{advice.engine,
@@ -46,7 +47,9 @@ std::optional<Advice> advise_by_trace(const ReplayAdvice& advice) {
         first->pair != stop.pair) {
         return std::nullopt;
     }
+    left_mm = first->left_mm;
     Advice out;
+    out.is_of_trace = true;
     for (const Setting& setting :
          settings_of_trace(advice.loaded.machine, stop.unproven, advice.seen)) {
         std::optional<LoadedMachine> changed = with_setting(advice.loaded, setting.lines);
@@ -61,7 +64,8 @@ std::optional<Advice> advise_by_trace(const ReplayAdvice& advice) {
     return out;
 }
 
-void advise_by_board(const ReplayAdvice& advice, Advice& out) {
+/// @param left_mm  of the trace's stop: no gain counts from farther away
+void advise_by_board(const ReplayAdvice& advice, double left_mm, Advice& out) {
     const std::optional<LoadedMachine> loaded = with_setting(advice.loaded, {});
     std::error_code error;
     std::string text;
@@ -78,8 +82,9 @@ void advise_by_board(const ReplayAdvice& advice, Advice& out) {
     }
     BoardRun run{advice.engine, advice.containment_test, reading.program, options.start};
     run.time_us_max = std::llround(advice.seconds * 1e6);
-    const std::optional<RunEnd> first = run_board(*loaded, run);
+    std::optional<RunEnd> first = run_board(*loaded, run);
     if (first && is_same_stop(loaded->machine, advice.stop, *first)) {
+        first->left_mm = std::min(first->left_mm, left_mm);
         advise_drive({*loaded, run, *first, advice.stop.unproven}, out);
     }
 }
@@ -92,10 +97,11 @@ std::optional<Advice> advise_replay(const ReplayAdvice& advice) {
         !std::filesystem::is_regular_file(advice.trace, error)) {
         return std::nullopt;
     }
-    std::optional<Advice> out = advise_by_trace(advice);
+    double left_mm = 0;
+    std::optional<Advice> out = advise_by_trace(advice, left_mm);
     if (out) {
         if (!advice.gcode.program.empty()) {
-            advise_by_board(advice, *out);
+            advise_by_board(advice, left_mm, *out);
         }
         sort_settings(*out);
     }

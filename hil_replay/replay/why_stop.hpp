@@ -31,6 +31,7 @@ struct Advice {
     std::uint32_t tried = 0;               // settings that were run
     std::vector<AdvisedSetting> settings;  // that gain kAdviceGainMm; the best first
     bool was_driven = false;               // also those that change the motion
+    bool is_of_trace = false;              // the stop is; what was driven is another motion
 };
 inline constexpr double kAdviceGainMm = 0.5;
 

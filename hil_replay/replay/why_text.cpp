@@ -61,18 +61,15 @@ std::string advice_text(const Advice& advice, Detail detail) {
     }
     std::string text =
         "  nearer with these lines in the machine file, if they are true; each was run:\n";
-    const bool is_mixed =
-        std::any_of(advice.settings.begin(), advice.settings.end(),
-                    [](const AdvisedSetting& setting) { return !setting.is_driven; });
     std::size_t printed = 0;
     for (const AdvisedSetting& setting : advice.settings) {
         if (detail == Detail::brief && printed + setting.lines.size() > kBriefAdviceLines) {
             continue;
         }
         for (std::size_t i = 0; i < setting.lines.size(); ++i, ++printed) {
-            text +=
-                fmt::format("    {:<19} {}{}\n", i == 0 ? gain_text(setting) : "", setting.lines[i],
-                            i == 0 && is_mixed && setting.is_driven ? "  # axguard drive" : "");
+            text += fmt::format(
+                "    {:<19} {}{}\n", i == 0 ? gain_text(setting) : "", setting.lines[i],
+                i == 0 && advice.is_of_trace && setting.is_driven ? "  # axguard drive" : "");
         }
     }
     return text + missing;
