@@ -187,9 +187,11 @@ LineFault parse_direction(const char* at, const char* end, CanFrame& frame) noex
     return {"end of line", rest(begin, end), "nothing after the frame but R or T"};
 }
 
+/// python-can writes error frames without their details: 0 bytes.
 LineFault check_kind(const CanFrame& frame, std::string_view text) noexcept {
-    if (frame.error && (frame.fd || frame.remote || frame.length_bytes != kErrorBytes)) {
-        return {"error frame", text, "an error frame of 8 bytes"};
+    const bool has_length = frame.length_bytes == kErrorBytes || frame.length_bytes == 0;
+    if (frame.error && (frame.fd || frame.remote || !has_length)) {
+        return {"error frame", text, "an error frame of 8 bytes, or of none"};
     }
     return {};
 }

@@ -66,6 +66,7 @@ TEST(CandumpReader, AnswersTheCorpusOnWhichReadersDisagree) {
         {line("123#R7"), "123 remote 7"},
         {line("123#R8_9"), "123 remote 8 dlc9"},
         {line("20000080#0000000000000000"), "80 error 8"},
+        {line("20000080#"), "80 error 0"},  // of python-can
         {line("20000004#0004000000000000"), "4 error 8"},
         {line("123##E112233"), "123 fd esi 3"},
         {line("123#1122334455667788_E"), "123 8 dlc14"},
