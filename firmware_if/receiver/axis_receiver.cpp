@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/assert.hpp"
 #include "core/machine/can_id.hpp"
 
 namespace axg {
@@ -54,6 +55,20 @@ ReceiverFault fault_of(FrameStatus status) noexcept {
             return ReceiverFault::bad_format;
     }
     return ReceiverFault::bad_format;
+}
+
+/// std::visit without an exception: an assembler is never without a value.
+template <class Use>
+auto with_assembler(Assembler& assembler, Use use) noexcept {
+    if (auto* const native = std::get_if<NativeAssembler>(&assembler)) {
+        return use(*native);
+    }
+    if (auto* const drives = std::get_if<DriveAssembler>(&assembler)) {
+        return use(*drives);
+    }
+    auto* const signals = std::get_if<SignalAssembler>(&assembler);
+    AXG_ASSERT(signals != nullptr);
+    return use(*signals);
 }
 
 }  // namespace
@@ -177,7 +192,7 @@ void AxisReceiver::forget() noexcept {
     session_.forget();
     check_.reset();
     samples_.forget();
-    std::visit([](auto& assembler) { assembler.forget(); }, assembler_);
+    with_assembler(assembler_, [](auto& assembler) { assembler.forget(); });
     losses_.good_in_row = 0;
 }
 
@@ -279,7 +294,7 @@ ReceiverEvent AxisReceiver::on_frame(const CanFrame& frame) noexcept {
     switch (kind) {
         case Kind::sync:
             return conclude(
-                std::visit([&](auto& to) { return to.on_sync(frame, samples_); }, assembler_),
+                with_assembler(assembler_, [&](auto& to) { return to.on_sync(frame, samples_); }),
                 frame.id);
         case Kind::heartbeat:
             return on_heartbeat(frame);
@@ -397,8 +412,8 @@ ReceiverEvent AxisReceiver::on_axis_frame(const CanFrame& frame, std::uint32_t s
         return fault(ReceiverFault::drive_fault, frame.id, content.drive_in_fault);
     }
     const AxisFrame axis{frame, content, slot, last};
-    return conclude(std::visit([&](auto& to) { return to.on_axis(axis, samples_); }, assembler_),
-                    frame.id);
+    return conclude(
+        with_assembler(assembler_, [&](auto& to) { return to.on_axis(axis, samples_); }), frame.id);
 }
 
 ReceiverEvent AxisReceiver::conclude(const Assembly& assembly, std::uint32_t frame_id) noexcept {

@@ -92,6 +92,33 @@ std::string black_box_fault(const std::string& path) {
                : std::string();
 }
 
+/// @param end  of the trace
+void print_inspect(std::FILE* out, const InspectReport& report, const TraceEnd& end) {
+    const TraceSurvey& survey = report.survey;
+    fmt::print(out, "{}: {} frames in {:.6f} s on {}, {} identifiers\n", report.file,
+               survey.frame_count(), report.seconds, report.trace.device(), report.ids.size());
+    if (end.lines_skipped > 0) {
+        fmt::print(out, "{} lines skipped, the first: {}\n", end.lines_skipped, end.first_skipped);
+    }
+    if (report.trace.events() > 0) {
+        fmt::print(out, "{} lines of other events, without a frame\n", report.trace.events());
+    }
+    print_ids(out, report.ids, survey.first_us());
+    if (report.machine != nullptr) {
+        print_axes(out, *report.machine, survey.snapshots());
+        if (survey.snapshots().snapshots > 0) {
+            print_limits(*report.machine, survey.limits(), out);
+        }
+        if (report.proposes_limits) {
+            print_proposed_limits(*report.machine, survey.limits(), out);
+        }
+    }
+    if (!end.fault.empty()) {
+        fmt::print(out, "\nTHE TRACE IS TRUNCATED: the rest is not in these figures\n  {}\n",
+                   end.fault);
+    }
+}
+
 int inspect(const InspectArguments& arguments) {
     TraceOptions options;
     options.lenient = arguments.lenient;
@@ -135,32 +162,10 @@ int inspect(const InspectArguments& arguments) {
     }
     const std::map<IdKey, IdSurvey> ids = survey.ids();
     const double seconds = static_cast<double>(survey.last_us() - survey.first_us()) * 1e-6;
-    std::FILE* const out = arguments.json.words();
-    fmt::print(out, "{}: {} frames in {:.6f} s on {}, {} identifiers\n", arguments.trace,
-               survey.frame_count(), seconds, trace->device(), ids.size());
-    if (end.lines_skipped > 0) {
-        fmt::print(out, "{} lines skipped, the first: {}\n", end.lines_skipped, end.first_skipped);
-    }
-    if (trace->events() > 0) {
-        fmt::print(out, "{} lines of other events, without a frame\n", trace->events());
-    }
-    print_ids(out, ids, survey.first_us());
-    if (has_machine) {
-        print_axes(out, machine, survey.snapshots());
-    }
-    if (has_machine && survey.snapshots().snapshots > 0) {
-        print_limits(machine, survey.limits(), out);
-    }
-    if (arguments.proposes_limits) {
-        print_proposed_limits(machine, survey.limits(), out);
-    }
     const InspectReport report{
         arguments.trace,          *trace, survey, seconds, ids, has_machine ? &machine : nullptr,
         arguments.proposes_limits};
-    if (!end.fault.empty()) {
-        fmt::print(out, "\nTHE TRACE IS TRUNCATED: the rest is not in these figures\n  {}\n",
-                   end.fault);
-    }
+    print_inspect(arguments.json.words(), report, end);
     return !write_json(arguments.json, describe_inspect(report)) ? kExitInternal
            : end.fault.empty()                                   ? kExitClean
                                                                  : kExitCan;

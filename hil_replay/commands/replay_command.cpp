@@ -382,6 +382,38 @@ std::string program_conflict(const ReplayArguments& arguments, bool has_program,
                        : "";
 }
 
+void add_run_options(const Command& command, ReplayArguments& arguments) {
+    command
+        .add_option(
+            "--engine", arguments.engine,
+            "cpu, cuda (GPU) or auto (selected by measurement) [default: from the machine file]")
+        .one_of({"cpu", "cuda", "auto"});
+    command.add_option("--sms", arguments.multiprocessors,
+                       "run on N GPU multiprocessors [default: 0 = all]");
+    command
+        .add_option("--mode", arguments.mode,
+                    "stoppable: require a stop certificate for every sample; contact: check only "
+                    "the sampled pose")
+        .one_of({"contact", "stoppable"});
+    command
+        .add_option("--deadline-us", arguments.deadline_us,
+                    "deadline of a cycle, us [default: deadline_us of the machine file]")
+        .between(std::int64_t{1}, std::int64_t{10'000'000});
+    command.add_flag(
+        "--realtime", arguments.is_realtime,
+        "withhold the permit of a late cycle, as axguardd does [default: count late cycles]");
+    command
+        .add_option("--arm-at", arguments.arm_at_s,
+                    "arm at this time of the trace, s [default: as soon as the guard is ready]")
+        .between(0.0, 1e10);
+    command
+        .add_option("--advice-s", arguments.advice_s,
+                    "seconds before the first stop to run again with other values of the machine "
+                    "file; prints those that stop nearer; 0: none")
+        .between(0.0, 1e6)
+        .shows_default();
+}
+
 }  // namespace
 
 void add_replay(CommandLine& line, const ReplayObserver& observer) {
@@ -395,35 +427,7 @@ void add_replay(CommandLine& line, const ReplayObserver& observer) {
         .add_input("TRACE", arguments->trace,
                    "candump log, Vector ASC file or black box of axguardd; - reads stdin")
         .required();
-    command
-        .add_option(
-            "--engine", arguments->engine,
-            "cpu, cuda (GPU) or auto (selected by measurement) [default: from the machine file]")
-        .one_of({"cpu", "cuda", "auto"});
-    command.add_option("--sms", arguments->multiprocessors,
-                       "run on N GPU multiprocessors [default: 0 = all]");
-    command
-        .add_option("--mode", arguments->mode,
-                    "stoppable: require a stop certificate for every sample; contact: check only "
-                    "the sampled pose")
-        .one_of({"contact", "stoppable"});
-    command
-        .add_option("--deadline-us", arguments->deadline_us,
-                    "deadline of a cycle, us [default: deadline_us of the machine file]")
-        .between(std::int64_t{1}, std::int64_t{10'000'000});
-    command.add_flag(
-        "--realtime", arguments->is_realtime,
-        "withhold the permit of a late cycle, as axguardd does [default: count late cycles]");
-    command
-        .add_option("--arm-at", arguments->arm_at_s,
-                    "arm at this time of the trace, s [default: as soon as the guard is ready]")
-        .between(0.0, 1e10);
-    command
-        .add_option("--advice-s", arguments->advice_s,
-                    "seconds before the first stop to run again with other values of the machine "
-                    "file; prints those that stop nearer; 0: none")
-        .between(0.0, 1e6)
-        .shows_default();
+    add_run_options(command, *arguments);
     command.add_flag("--keep-going", arguments->keep_going, "continue after a stop");
     command.add_output("--csv", arguments->csv,
                        "write one CSV line per sample: axes, permit, clearances");

@@ -184,7 +184,7 @@ def check_plots(browser):
 def read_steps(trace):
     """[(time in s, line)] of the table beside a trace."""
     table = trace.with_name(trace.name + ".lines").read_text(encoding="utf-8").split("\n")
-    words = [line.split(" ") for line in table[5:] if line and not line.startswith("crc32 ")]
+    words = [line.split(" ") for line in table[6:] if line and not line.startswith("crc32 ")]
     return [(int(word[0]) * 1e-6, int(word[1])) for word in words]
 
 
