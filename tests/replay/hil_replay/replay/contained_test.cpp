@@ -56,7 +56,7 @@ class ContainedReplay : public testing::Test {
         (void)shop.write("m.yaml", text.replace(text.find("@ALLOW@"), 7, allow));
     }
     void simulate(const std::string& program, const std::string& options = "") {
-        (void)shop.write("p.ngc", "G21 " + program);
+        (void)shop.write("p.ngc", "G21\n" + program);
         ASSERT_EQ(shop.run("simulate m.yaml p.ngc -o t.log " + options), kExitClean) << shop.err;
     }
     test::Json replay(int wanted, const std::string& options = "") {
