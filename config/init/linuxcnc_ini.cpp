@@ -11,6 +11,7 @@
 #include <map>
 #include <utility>
 
+#include "config/machine/program_settings.hpp"
 #include "config/text/fault_text.hpp"
 #include "config/text/quote_text.hpp"
 #include "core/base/sincos.hpp"
@@ -334,7 +335,8 @@ class Reader {
             // LinuxCNC keeps its own one in place of a smaller or a larger value than these.
             const bool is_mm = *unit == 'M';
             const double least = is_mm ? 0.001 : 0.00004;
-            const double most = is_mm ? 0.028284271247461901 : 0.0028284271247461901;
+            const ProgramSettings own;
+            const double most = is_mm ? own.arc_tolerance_mm : own.arc_tolerance_inch;
             const std::optional<double> read = number_of(without_comment(value->text));
             if (read && *read >= least && *read <= most) {
                 set(is_mm ? "arc_tolerance_mm" : "arc_tolerance_inch", 0,

@@ -344,7 +344,7 @@ def main():
     seed, count = int(os.environ.get("AXG_SEED", "274")), int(os.environ.get("AXG_COUNT", "400"))
     print(f"seed {seed} (AXG_SEED overrides it), {count} random programs")
     rng = random.Random(seed)
-    faults, accepted, motions, tip_motions, wrapped_motions = [], 0, 0, 0, 0
+    faults, accepted, motions = [], 0, 0
     with tempfile.TemporaryDirectory() as folder:
         program = os.path.join(folder, "program.ngc")
         pathlib.Path(folder, TOOLS).write_text(
@@ -363,6 +363,25 @@ def main():
                 faults.append(f"{name}: {found}")
             return theirs, ours, why
 
+        def compare_each(kind, make, *options):
+            """The motions of random programs that both have to read, up to the first fault."""
+            motions_of_kind = 0
+            for i in range(count):
+                text = make(rng)
+                pathlib.Path(program).write_text(text, encoding="ascii")
+                ours, why = of_axguard(print_moves, program, "--" + kind)
+                pathlib.Path(program).write_text(LEFT_OUT.sub("", text), encoding="ascii")
+                theirs = of_linuxcnc(program, *options)
+                if kind == "wrapped" and "rounding would decide" in why and theirs is not None:
+                    continue  # its sums differ from these by rounding: a turn or none
+                found = why or ("they refuse it" if theirs is None else difference(ours, theirs))
+                motions_of_kind += len(ours or ())
+                if found:
+                    faults.append(f"{kind} program {i}: {found}")
+                    print(text)
+                    break
+            return motions_of_kind
+
         for i in range(2 * count):
             text = random_program(rng) if i < count else rounded_arc(rng)
             pathlib.Path(program).write_text(text, encoding="ascii")
@@ -379,33 +398,10 @@ def main():
             "[EMC]\nVERSION=1.1\n[RS274NGC]\nPARAMETER_FILE = none.var\n" +
             "".join(f"[AXIS_{letter}]\nWRAPPED_ROTARY = 1\n" for letter in "ABC"),
             encoding="ascii")
-        for i in range(count):
-            text = wrapped_program(rng)
-            pathlib.Path(program).write_text(text, encoding="ascii")
-            ours, why = of_axguard(print_moves, program, "--wrapped")
-            theirs = of_linuxcnc(program, "-i", "wrapped.ini")
-            if "rounding would decide" in why and theirs is not None:
-                continue  # its sums differ from these by rounding: a turn or none
-            found = why or ("they refuse it" if theirs is None else difference(ours, theirs))
-            wrapped_motions += len(ours or ())
-            if found:
-                faults.append(f"wrapped program {i}: {found}")
-                print(text)
-                break
+        wrapped_motions = compare_each("wrapped", wrapped_program, "-i", "wrapped.ini")
         pathlib.Path(folder, TOOLS).write_text(
             "".join(f"T{n} P{n} Z{z / INCH:.9f}\n" for n, z in TIP_TOOLS.items()), encoding="ascii")
-        for i in range(count):
-            text = tip_program(rng)
-            pathlib.Path(program).write_text(text, encoding="ascii")
-            ours, why = of_axguard(print_moves, program, "--tip")
-            pathlib.Path(program).write_text(LEFT_OUT.sub("", text), encoding="ascii")
-            theirs = of_linuxcnc(program)
-            found = why or ("they refuse it" if theirs is None else difference(ours, theirs))
-            tip_motions += len(ours or ())
-            if found:
-                faults.append(f"tip program {i}: {found}")
-                print(text)
-                break
+        tip_motions = compare_each("tip", tip_program)
         pathlib.Path(folder, TOOLS).write_text(
             "".join(f"T{n} P{n} Z0\n" for n in TOOL_NUMBERS), encoding="ascii")
         for path in sorted(gcode.glob("*.ngc")):
