@@ -100,12 +100,13 @@ std::vector<TravelExcess> check_controlled_travel(const Machine& machine, const 
         const bool is_rotary = machine.axes[i].kind == AxisKind::rotary;
         turning += is_rotary ? std::abs(move.target[i] - from[i]) : 0.0;
     }
-    const double steps = std::min(std::ceil(turning / kStepRad) + 1, kStepsMax);
+    const auto steps =
+        static_cast<std::uint32_t>(std::min(kStepsMax, std::ceil(turning / kStepRad) + 1));
     std::array<Extent, kAxesMax> extents;
     extents.fill({HUGE_VAL, -HUGE_VAL});
     is_singular = false;
-    for (double step = 1; step <= steps; ++step) {
-        const AxisPositions commanded = point_on(from, move, step / steps);
+    for (std::uint32_t step = 1; step <= steps; ++step) {
+        const AxisPositions commanded = point_on(from, move, static_cast<double>(step) / steps);
         is_singular = is_singular || !(control.spread_at(commanded) >= kSpreadMin);
         AxisPositions axes;
         control.axes_at(commanded, axes);

@@ -82,7 +82,8 @@ std::optional<AxisSnapshot> PosedMachine::last_clear(AxisSnapshot snapshot, std:
     if (!is_clear(snapshot)) {
         return std::nullopt;
     }
-    double clear = snapshot.position[axis], blocked = clear;
+    double clear = snapshot.position[axis];
+    double blocked;
     do {
         clear = snapshot.position[axis];
         blocked = within_travel(axis, upwards ? clear + kStepMm : clear - kStepMm);

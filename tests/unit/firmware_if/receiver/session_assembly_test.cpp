@@ -173,7 +173,7 @@ INSTANTIATE_TEST_SUITE_P(Native, SessionAssembly,
 
 // Without a sample counter the id may be anybody's.
 TEST(SessionAssemblySignals, ReadNoSession) {
-    AxisReceiver receiver(five_axis_machine(CanFormat::signals));
+    AxisReceiver receiver(test::five_axis_machine(CanFormat::signals));
     (void)receiver.on_frame(session_frame({.number = 3}, 999'000));
     EXPECT_EQ(receiver.counters().foreign, 1U);
 }
