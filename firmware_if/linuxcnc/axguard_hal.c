@@ -3,8 +3,8 @@
 // (libaxguard) in this process, and the guard's frames back. If it is killed, no later permit
 // arrives: the realtime component counts the last one down by itself.
 // With --bus the guard is axguardd on another computer: samples leave as frames, its frames come
-// in. Usage: loadusr -W axguard-hal MACHINE.yaml [--mesh-root DIR] [--contact] [--simulation]
-// [--bus CAN]
+// in. Usage: loadusr -W axguard-hal MACHINE.yaml --linear-units [TRAJ]LINEAR_UNITS
+// [--mesh-root DIR] [--contact] [--simulation] [--bus CAN]
 #include <axguard.h>
 #include <hal.h>
 #include <inttypes.h>
@@ -16,6 +16,7 @@
 #include <time.h>
 
 #include "firmware_if/linuxcnc/axguard_bus.h"
+#include "firmware_if/linuxcnc/axguard_units.h"
 #include "firmware_if/linuxcnc/axguard_wire.h"
 
 #define IDLE_NS 50000   // between two looks at an empty stream
@@ -45,8 +46,9 @@ typedef struct host {
     axg_phase phase_said;
     bool has_said;
     explained explained;
-    axg_stop stop;  // in force
-    uint16_t tool;  // whose length was sent
+    axg_stop stop;   // in force
+    double unit_mm;  // length of the unit of LinuxCNC's pins
+    uint16_t tool;   // whose length was sent
     bool has_tool;
     uint32_t lines_said;
     int32_t program_line;  // of the stop
@@ -108,6 +110,11 @@ static void send_done(host* host, uint64_t number) {
     send(host, AXG_WIRE_DONE, is_ready ? 1 : 0, 0, data, 0);
 }
 
+// mm or degrees of the guard in one unit of the joint's pins.
+static double unit_of(const host* host, uint32_t joint) {
+    return host->terms.axes[joint].is_rotary != 0 ? 1 : host->unit_mm;
+}
+
 static bool send_options(host* host) {
     const axg_terms* const terms = &host->terms;
     const uint8_t none[8] = {0};
@@ -123,13 +130,16 @@ static bool send_options(host* host) {
     option[AXG_WIRE_HASHES_ID] = terms->hashes_out_id;
     option[AXG_WIRE_HASHES_IN_ID] = terms->hashes_in_id;
     option[AXG_WIRE_TOOL] = terms->first_tool;
+    option[AXG_WIRE_LENGTH_UNIT] = host->unit_mm;
     for (uint32_t i = 0; i < AXG_HASH_PARTS; ++i) {
         option[AXG_WIRE_HASH + i] = terms->hashes[i];
     }
     for (uint32_t i = 0; i < terms->axis_count; ++i) {
-        option[AXG_WIRE_STOPPING + i] = terms->axes[i].stopping;
-        option[AXG_WIRE_JOG_SPEED + i] = terms->axes[i].jog_speed;
-        option[AXG_WIRE_JOG_ACCELERATION + i] = terms->axes[i].jog_acceleration;
+        const double unit = unit_of(host, i);
+        option[AXG_WIRE_UNIT + i] = unit;
+        option[AXG_WIRE_STOPPING + i] = terms->axes[i].stopping / unit;
+        option[AXG_WIRE_JOG_SPEED + i] = terms->axes[i].jog_speed / unit;
+        option[AXG_WIRE_JOG_ACCELERATION + i] = terms->axes[i].jog_acceleration / unit;
     }
     bool is_sent = true;
     for (uint32_t i = 0; i < AXG_WIRE_OPTIONS; ++i) {
@@ -364,7 +374,7 @@ static void take_sample(host* host, const union hal_stream_data record[]) {
     sample.flags = (uint8_t)(record[3].u >> 8 & 0xFFU);
     sample.tool = (uint16_t)(record[3].u >> 16);
     for (uint32_t i = 0; i < sample.axis_count; ++i) {
-        sample.position[i] = record[AXG_WIRE_SAMPLE_WORDS + i].f;
+        sample.position[i] = record[AXG_WIRE_SAMPLE_WORDS + i].f * unit_of(host, i);
     }
     host->sample_us = sample.latched_us;
     host->arrived_ns = host_ns();
@@ -404,8 +414,11 @@ static bool make_guard(host* host, int count, char** words) {
     options.version = AXG_INTERFACE_VERSION;
     options.engine = AXG_ENGINE_OF_MACHINE_FILE;
     options.mode = AXG_MODE_STOPPABLE;
+    const char* unit = "nothing";
     for (int i = 1; i < count; ++i) {
-        if (strcmp(words[i], "--mesh-root") == 0 && i + 1 < count) {
+        if (strcmp(words[i], "--linear-units") == 0 && i + 1 < count) {
+            unit = words[++i];
+        } else if (strcmp(words[i], "--mesh-root") == 0 && i + 1 < count) {
             options.mesh_root = words[++i];
         } else if (strcmp(words[i], "--contact") == 0) {
             options.mode = AXG_MODE_CONTACT;
@@ -423,8 +436,13 @@ static bool make_guard(host* host, int count, char** words) {
     }
     if (options.machine_file == NULL) {
         fprintf(stderr,
-                "usage: axguard-hal MACHINE.yaml [--mesh-root DIR] [--contact] "
-                "[--simulation] [--bus CAN]\n");
+                "usage: axguard-hal MACHINE.yaml --linear-units [TRAJ]LINEAR_UNITS "
+                "[--mesh-root DIR] [--contact] [--simulation] [--bus CAN]\n");
+        return false;
+    }
+    host->unit_mm = axg_unit_mm(unit);
+    if (host->unit_mm == 0) {
+        fprintf(stderr, AXG_UNITS_WORDS, unit);
         return false;
     }
     const axg_status status = axg_guard_create(&options, &host->guard, text, sizeof text);

@@ -42,7 +42,8 @@ typedef struct stop_state {
     bool has_begun;
     uint64_t count;                     // servo periods: the number of the sample
     uint64_t period_us;                 // as the thread runs
-    double at[AXG_WIRE_JOINTS_MAX];     // where the motor was sent: joint and motor offset
+    double at[AXG_WIRE_JOINTS_MAX];     // where the motor was sent: joint and motor offset, in the
+                                        // unit of the pins
     double speed[AXG_WIRE_JOINTS_MAX];  // per second
     bool has_at;
     bool is_synchronous;  // what is commanded passes without a jump
@@ -73,6 +74,12 @@ static uint64_t now_us(void) {
     return state.count * state.period_us;
 }
 
+// A distance in mm or degrees, in the unit of the joint's pins.
+static double in_pins(double distance, int joint) {
+    const double unit = state.option[AXG_WIRE_UNIT + joint];
+    return unit > 0 ? distance / unit : distance;  // before the guard states it: as if it were mm
+}
+
 // --- What comes from the guard ----------------------------------------------------------------
 
 static void begin(void) {
@@ -97,7 +104,8 @@ static void begin(void) {
     }
     bool brakes = true;
     for (int i = 0; i < joints; ++i) {
-        brakes = brakes && state.option[AXG_WIRE_STOPPING + i] > 0;
+        brakes = brakes && state.option[AXG_WIRE_STOPPING + i] > 0 &&
+                 state.option[AXG_WIRE_UNIT + i] > 0;
     }
     const bool is_ours = options.period_us == state.period_us && options.axis_count == joints;
     state.nonce = (uint32_t)((uint64_t)rtapi_get_time() >> 4) & AXG_BOARD_NONCE_MAX;
@@ -277,7 +285,7 @@ static bool read_commands(double wanted[]) {
         if (!state.has_at) {
             state.at[i] = wanted[i];
         }
-        is_aligned = is_aligned && fabs(wanted[i] - state.at[i]) <= ALIGNED;
+        is_aligned = is_aligned && fabs(wanted[i] - state.at[i]) <= in_pins(ALIGNED, i);
     }
     state.has_at = true;
     return is_aligned;
@@ -317,7 +325,7 @@ static bool pass(const double wanted[], double period_s) {
         const double step = wanted[i] - state.at[i];
         state.speed[i] = step / period_s;
         state.at[i] = wanted[i];
-        moves = moves || fabs(step) > STILL_STEP;
+        moves = moves || fabs(step) > in_pins(STILL_STEP, i);
     }
     return moves;
 }
@@ -328,13 +336,13 @@ static bool keeps_jog(const double wanted[], double period_s) {
     for (int i = 0; i < joints; ++i) {
         const double step = wanted[i] - state.at[i];
         if (i != state.jog_joint) {
-            keeps = keeps && fabs(step) <= ALIGNED;
+            keeps = keeps && fabs(step) <= in_pins(ALIGNED, i);
             continue;
         }
         const double forward = state.jogs_down ? -step : step;
         const double speed = forward > 0 ? forward / period_s : 0;
         const double change = fabs(speed - fabs(state.speed[i])) / period_s;
-        keeps = keeps && forward >= -ALIGNED &&
+        keeps = keeps && forward >= -in_pins(ALIGNED, i) &&
                 speed <= ROUNDED * state.option[AXG_WIRE_JOG_SPEED + i] &&
                 change <= ROUNDED * state.option[AXG_WIRE_JOG_ACCELERATION + i];
     }
@@ -344,7 +352,8 @@ static bool keeps_jog(const double wanted[], double period_s) {
 static bool pass_jog(const double wanted[], double period_s) {
     const int i = state.jog_joint;
     const double step = wanted[i] - state.at[i];
-    const bool moves = state.jogs_down ? step < -STILL_STEP : step > STILL_STEP;
+    const double still = in_pins(STILL_STEP, i);
+    const bool moves = state.jogs_down ? step < -still : step > still;
     hold();
     state.speed[i] = moves ? step / period_s : 0;
     state.at[i] += moves ? step : 0;
@@ -363,11 +372,14 @@ static bool is_fast(void) {
 // length is a stop; at rest it withholds the permit until the lengths agree.
 static axg_board_motion may_move(void) {
     const bool differed = state.length.differs;
-    const bool differs = axg_length_compare(&state.length, state.tool.number, *pins->length,
-                                            *pins->length_tolerance);
+    const double unit_mm = state.option[AXG_WIRE_LENGTH_UNIT];
+    const double offset_mm = *pins->length * unit_mm;
+    const double tolerance_mm = *pins->length_tolerance;
+    const bool differs =
+        axg_length_compare(&state.length, state.tool.number, offset_mm, tolerance_mm);
     if (differs && !differed) {
-        rtapi_print_msg(RTAPI_MSG_ERR, AXG_LENGTH_WORDS, (unsigned)state.tool.number, *pins->length,
-                        state.length.file_mm, *pins->length_tolerance);
+        rtapi_print_msg(RTAPI_MSG_ERR, AXG_LENGTH_WORDS, (unsigned)state.tool.number, offset_mm,
+                        state.length.file_mm, tolerance_mm);
     }
     if (differs && is_fast()) {
         axg_board_stop(&state.board, now_us());

@@ -69,6 +69,12 @@ def clean_program(source, lines):
     return "\n".join(rows if lines is None else rows[:lines] + ["G0 Z50", "M2"]) + "\n"
 
 
+# The table has the tool 20 mm longer than the machine file.
+LENGTH_PROGRAM = HEAD + "G0 X20\nG43 H1\nG0 X-20\nM2\n"
+LONGER = {"limit_s": 4, "length": True, "table": "T1 P1 Z160 D12\n",
+          "after": HEAD + "G43 H1\nG0 X-20\nG0 X0\nM2\n"}
+
+
 def scenarios(source):
     """name: (program, whether it is stopped, what happens meanwhile)."""
     kill = [{"do": "kill", "after_s": 1.5}]
@@ -79,6 +85,7 @@ def scenarios(source):
         "collide": (COLLIDE, True, {"again": True}),
         "collide_feed": (COLLIDE_FEED, True, {"events": [{"do": "feed", "after_s": 0.5,
                                                           "value": 1.3}]}),
+        "collide_inch": (COLLIDE, True, {"is_inch": True}),
         "kill": (SWING, True, {"events": kill}),
         "kill_approach": (COLLIDE, True, {"events": [
             {"do": "kill", "pin": "axguard-stop.2.position", "below": -60}]}),
@@ -92,9 +99,8 @@ def scenarios(source):
         "tool_in_motion": (SWING, True, {"events": [{"do": "tool_change", "after_s": 1.5}]}),
         "tool_unknown": (TOOLS.replace("T2 M6", "T3 M6"), False,
                          {"limit_s": 5, "key": True, "after": AFTER}),
-        "tool_length": (HEAD + "G0 X20\nG43 H1\nG0 X-20\nM2\n", False,
-                        {"limit_s": 4, "length": True, "table": "T1 P1 Z160 D12 ;20 mm longer\n",
-                         "after": HEAD + "G43 H1\nG0 X-20\nG0 X0\nM2\n"}),
+        "tool_length": (LENGTH_PROGRAM, False, LONGER),
+        "tool_length_inch": (LENGTH_PROGRAM, False, LONGER | {"is_inch": True}),
         "xyzac_clean": (TIP_CLEAN, False, {}),
         "xyzac_collide": (TIP_COLLIDE, True, {}),
         "xyzbc_clean": (TIP_CLEAN.replace("A", "B"), False, {}),
@@ -107,8 +113,9 @@ def scenarios(source):
 
 
 # At most three minutes; the others run by hand, by name.
-USUAL = ["clean", "collide", "kill_approach", "late", "estop", "unguarded", "jog", "tool",
-         "tool_collide", "tool_unknown", "tool_length", "xyzac_clean"]
+USUAL = ["clean", "collide", "collide_inch", "kill_approach", "late", "estop", "unguarded", "jog",
+         "tool", "tool_collide", "tool_unknown", "tool_length", "tool_length_inch", "xyzac_clean"]
+SAME_MM = 0.5  # between two runs of one collision: three periods of its speed
 
 
 def tip_error(rows, machine):
@@ -153,7 +160,7 @@ def ramp_facts(rows, stopping, first, period_s):
     turned = any((rows[i][1 + j] - rows[i - 1][1 + j]) * before[j] < -1e-12
                  for i in range(first, rest) for j in range(5))
     left = rows[used][8] / 1e6 / period_s
-    return {"at": rows[first][0], "turned": turned,
+    return {"at": rows[first][0], "turned": turned, "rest": rows[rest - 1][1:6],
             "speeds": [round(abs(step) / period_s, 1) for step in before],
             "periods": rest - first + 1, "promised": round(REACTION_PERIODS + ramp + 1, 1),
             "permit_left": round(left, 3), "from_last_permit": rest - used,
@@ -197,13 +204,16 @@ def check_key(said, output):
     return faults
 
 
-LENGTH = {"differs": "TRUE", "permit": "FALSE", "x": 20.0, "permit_without": True}
+LENGTH = {"differs": "TRUE", "permit": "FALSE", "permit_without": True}
 
 
-def check_length(said):
+def check_length(said, unit_mm):
     """With another length in the tool table no joint moves, and both numbers are shown."""
-    faults = [f"tool_length: {key}: found {said.get('length', {}).get(key)}, expected {wanted}"
-              for key, wanted in LENGTH.items() if said.get("length", {}).get(key) != wanted]
+    found = said.get("length", {})
+    faults = [f"tool_length: {key}: found {found.get(key)}, expected {wanted}"
+              for key, wanted in LENGTH.items() if found.get(key) != wanted]
+    if abs(found.get("x", 0) * unit_mm - 20) > 1e-3:
+        faults.append(f"tool_length: x: found {found.get('x')} of {unit_mm} mm, expected 20 mm")
     if said.get("after") != "done":
         faults.append(f"tool_length: the program afterwards: {said.get('after')}, expected done")
     if "length is 160.000 mm, length_mm of the machine file 140.000 mm" not in "".join(
@@ -245,7 +255,7 @@ def check(name, is_stopped, said, rows, overruns, judged, facts):
         return faults
     if not said["armed"] or "pins" not in said:
         return faults + [f"{name}: not armed"]
-    waits = name in ("tool_unknown", "tool_length")
+    waits = name == "tool_unknown" or name.startswith("tool_length")
     wanted = "stopped" if is_stopped else "limit" if waits else "done"
     if said["ended"] != wanted:
         faults.append(f"{name}: found {said['ended']}, expected {wanted}")
@@ -288,6 +298,17 @@ def check(name, is_stopped, said, rows, overruns, judged, facts):
     return faults
 
 
+def check_units(facts_of):
+    """The same machine in inch rests where the one in mm does."""
+    if not {"collide", "collide_inch"} <= set(facts_of):
+        return []
+    rests = [facts_of[name]["stops"][0]["rest"] for name in ("collide", "collide_inch")
+             if facts_of[name]["stops"]]
+    if len(rests) == 2 and math.dist(*rests) <= SAME_MM:
+        return []
+    return [f"collide_inch: rests at {rests[-1:]}, expected {rests[:1]}"]
+
+
 def run_all(given):
     # Not in a folder of root's own: LinuxCNC runs as somebody else.
     folder = given.keep or pathlib.Path(tempfile.mkdtemp(prefix="axg-linuxcnc-", dir="/tmp"))
@@ -317,7 +338,7 @@ def run_all(given):
         facts = stop_facts(rows, STOPPING[machine])
         mine = check(name, is_stopped, said, rows, overruns, judged, facts)
         mine += check_key(said, output) if name == "tool_unknown" else []
-        mine += check_length(said) if name == "tool_length" else []
+        mine += check_length(said, place.unit_mm) if name.startswith("tool_length") else []
         mine += check_words(name, said, output) if name == "collide" else []
         facts_of[name] = {"samples": len(rows), "overruns": overruns, "ended": said.get("ended"),
                           "contacts": sum(stop["reason"] != "tool" for stop in judged["stops"]),
@@ -333,7 +354,7 @@ def run_all(given):
         faults += mine
     if not given.keep:
         shutil.rmtree(folder, ignore_errors=True)
-    return faults, facts_of
+    return faults + check_units(facts_of), facts_of
 
 
 def main():

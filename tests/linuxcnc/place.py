@@ -22,6 +22,11 @@ SAMPLES = "samples.txt"
 # Of the sampler, behind its own number: sample, five joints, permit-ok, stopping, left-us, mode,
 # tool.
 COLUMNS = "ufffffbbuuu"
+INCH_MM = 25.4
+# Keys of linear joints and axes that have the machine's unit.
+LENGTHS = ("MIN_LIMIT", "MAX_LIMIT", "MAX_VELOCITY", "MAX_ACCELERATION", "HOME", "HOME_OFFSET",
+           "MAX_LINEAR_VELOCITY", "DEFAULT_LINEAR_VELOCITY", "MAX_LINEAR_ACCELERATION",
+           "DEFAULT_LINEAR_ACCELERATION", "FERROR", "MIN_FERROR")
 
 
 @contextlib.contextmanager
@@ -62,7 +67,8 @@ class Place:
         self.meshes = root / "config/machines"
         self.user = pwd.getpwnam("nobody") if os.geteuid() == 0 else pwd.getpwuid(os.geteuid())
 
-    def prepare(self, program, guarded, simulation_wait_us, **scenario):
+    def prepare(self, program, guarded, simulation_wait_us, is_inch=False, **scenario):
+        self.unit_mm = INCH_MM if is_inch else 1
         shutil.rmtree(self.folder, ignore_errors=True)
         self.folder.mkdir(parents=True)
         shutil.copy(self.build / "axguard-hal", self.folder)
@@ -73,8 +79,8 @@ class Place:
         (self.folder / "display.py").chmod(0o755)
         (self.folder / "program.ngc").write_text(program, encoding="ascii")
         table = self.folder / f"{self.name}.tbl"
-        table.write_text(scenario.pop("table", table.read_text(encoding="ascii")),
-                         encoding="ascii")
+        rows = scenario.pop("table", table.read_text(encoding="ascii"))
+        table.write_text(re.sub(r"\b([ZD])([\d.]+)", self.in_units, rows), encoding="ascii")
         (self.folder / "after.ngc").write_text(scenario.pop("after", "M2\n"), encoding="ascii")
         scenario.update(guarded=guarded)
         (self.folder / "scenario.json").write_text(json.dumps(scenario), encoding="utf-8")
@@ -90,7 +96,18 @@ class Place:
         text = re.sub("MESHES = .*", f"MESHES = {self.folder}", text)
         text = text.replace(f"MACHINE = {self.name}.yaml",
                             f"MACHINE = {self.folder}/{self.name}.yaml")
+        if self.unit_mm != 1:
+            text = text.replace("LINEAR_UNITS = mm", "LINEAR_UNITS = inch")
+            linear = r"^\[(TRAJ|DISPLAY|JOINT_[012]|AXIS_[XYZ])\]$[^[]*"
+            text = re.sub(linear, self.section_in_units, text, flags=re.MULTILINE)
         ini.write_text(text, encoding="utf-8")
+
+    def in_units(self, match):
+        return f"{match[1]}{float(match[2]) / self.unit_mm:.12g}"
+
+    def section_in_units(self, match):
+        return re.sub(rf"^((?:{'|'.join(LENGTHS)}) *= *)(\S+)", self.in_units, match[0],
+                      flags=re.MULTILINE)
 
     def write_hal(self, guarded, simulation_wait_us):
         """The example's file, with the component of this build and a record of each period."""
@@ -160,7 +177,9 @@ class Place:
             if "overrun" in words:
                 overruns += 1
             elif len(words) == 1 + len(COLUMNS):
-                rows.append([int(words[1]), *map(float, words[2:7]), *map(int, words[7:])])
+                joints = [float(word) * (self.unit_mm if i < 3 else 1)
+                          for i, word in enumerate(words[2:7])]
+                rows.append([int(words[1]), *joints, *map(int, words[7:])])
         return rows, overruns
 
 
