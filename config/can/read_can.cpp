@@ -478,37 +478,4 @@ void read_can(MapReader& top, MachineDraft& draft) {
     }
 }
 
-namespace {
-void read_batch_capacities(MapReader reader, BatchCapacities& out) {
-    reader.whole("level_pairs", Need::optional, {512, 1U << 16U}, out.level_pairs);
-    reader.whole("leaf_pairs", Need::optional, {32, 1U << 20U}, out.leaf_pairs);
-    reader.whole("box_rows", Need::optional, {512, 1U << 24U}, out.box_rows);
-    reader.whole("triangle_pairs", Need::optional, {32, 1U << 24U}, out.triangle_pairs);
-    reader.whole("rechecks", Need::optional, {1, 1U << 20U}, out.rechecks);
-}
-}  // namespace
-
-void read_capacities(MapReader& top, MachineDraft& draft) {
-    const YamlNode* section = top.find("capacities", Need::optional, "a map of list lengths");
-    if (section == nullptr) {
-        return;
-    }
-    MapReader reader{*section,
-                     "capacities",
-                     {"node_pairs", "triangle_pairs", "rechecks", "batch"},
-                     draft.faults};
-    Capacities& out = draft.machine.capacities;
-    reader.whole("node_pairs", Need::optional, {32, 1U << 22U}, out.node_pairs);
-    reader.whole("triangle_pairs", Need::optional, {32, 1U << 24U}, out.triangle_pairs);
-    reader.whole("rechecks", Need::optional, {0, 1U << 20U}, out.rechecks);
-    if (const YamlNode* batch = reader.find("batch", Need::optional, "a map of list lengths")) {
-        read_batch_capacities(
-            {*batch,
-             "capacities.batch",
-             {"level_pairs", "leaf_pairs", "box_rows", "triangle_pairs", "rechecks"},
-             draft.faults},
-            out.batch);
-    }
-}
-
 }  // namespace axg

@@ -11,6 +11,7 @@
 #include <initializer_list>
 #include <vector>
 
+#include "config/machine/machine_keys.hpp"
 #include "config/mesh/load_meshes.hpp"
 #include "config/text/quote_text.hpp"
 #include "core/base/finite.hpp"
@@ -43,6 +44,40 @@ class Lines {
     }
 };
 
+template <class Owner>
+void add_scalar(Lines& lines, const std::string& line, const ScalarKey<Owner>& row,
+                const Owner& owner) {
+    if (row.number != nullptr) {
+        if (is_finite(owner.*row.number)) {
+            lines.add(line, {owner.*row.number});
+        }
+        return;
+    }
+    if (row.whole != nullptr) {
+        lines.add(line, owner.*row.whole);
+        return;
+    }
+    const std::size_t place = row.is_on != nullptr ? owner.*row.is_on : row.place(owner);
+    if (place == 0 && row.when == KeyLine::unless_first) {
+        return;
+    }
+    if (row.is_text) {
+        lines.add(line, std::string(row.words[place]));
+    } else {
+        lines.add(line, static_cast<std::uint32_t>(place));
+    }
+}
+
+template <class Owner>
+void add_scalars(Lines& lines, const std::string& section, ScalarKeys<Owner> table,
+                 const Owner& owner) {
+    for (const ScalarKey<Owner>& row : table) {
+        if (row.only_with == nullptr || owner.*row.only_with) {
+            add_scalar(lines, section + row.line, row, owner);
+        }
+    }
+}
+
 void add_pose(Lines& lines, const std::string& key, const Pose& pose) {
     for (std::size_t i = 0; i < 3; ++i) {
         lines.add(key + ".row" + std::to_string(i),
@@ -65,15 +100,7 @@ void add_axes(Lines& lines, const Machine& machine) {
         lines.add(key + ".kind", axis.kind == AxisKind::rotary ? "rotary" : "linear");
         lines.add(key + ".unlimited", axis.unlimited ? 1U : 0U);
         lines.add(key + ".travel", {axis.min, axis.max});
-        lines.add(key + ".speed", {axis.speed_max});
-        lines.add(key + ".acceleration", {axis.acceleration_max});
-        lines.add(key + ".jerk", {axis.jerk_max});
-        lines.add(key + ".stopping", {axis.stopping_min});
-        if (is_finite(axis.stopping_most)) {
-            lines.add(key + ".stopping_most", {axis.stopping_most});
-        }
-        lines.add(key + ".position_error", {axis.position_error});
-        lines.add(key + ".following_error", {axis.following_error});
+        add_scalars(lines, key + ".", axis_keys(axis.kind), axis);
     }
 }
 
@@ -206,37 +233,9 @@ void add_can(Lines& lines, const CanLayout& can) {
 }
 
 void add_guard(Lines& lines, const GuardRules& guard) {
-    lines.add("guard.promise", to_text(guard.promise));
-    lines.add("guard.board_reaction_s", {guard.board_reaction_s});
-    lines.add("guard.latch_jitter_s", {guard.latch_jitter_s});
-    lines.add("guard.free_jerk_limited", guard.free_jerk_limited ? 1U : 0U);
-    if (guard.obeyed_by != ObeyedBy::board) {
-        lines.add("guard.obeyed_by", to_text(guard.obeyed_by));
-    }
-    if (guard.stop_reversal != StopReversal::none) {
-        lines.add("guard.stop_reversal", static_cast<std::uint32_t>(guard.stop_reversal));
-    }
-    if (guard.reports_limits) {
-        lines.add("guard.reports_limits", 1U);
-    }
-    lines.add("guard.travel_enforced", guard.travel_enforced ? 1U : 0U);
-    if (guard.travel_proofs) {
-        lines.add("guard.travel_proofs", 1U);
-        lines.add("guard.overrun_mm", {guard.overrun_mm});
-        lines.add("guard.overrun_rad", {guard.overrun_rad});
-    }
-    lines.add("guard.speed_cap", guard.speed_cap ? 1U : 0U);
-    lines.add("guard.cap_lead_s", {guard.cap_lead_s});
-    if (guard.cap != CapPromise::none) {
-        lines.add("guard.cap", to_text(guard.cap));
-    }
-    lines.add("guard.level_band_mm", {guard.level_band_mm});
-    lines.add("guard.level_hold_samples", guard.level_hold_samples);
+    add_scalars(lines, "guard.", guard_keys(), guard);
     lines.add("guard.jog.is_promised", guard.jog.is_promised ? 1U : 0U);
-    lines.add("guard.jog.speed_mm_s", {guard.jog.speed_mm_s});
-    lines.add("guard.jog.acceleration_mm_s2", {guard.jog.acceleration_mm_s2});
-    lines.add("guard.jog.speed_rad_s", {guard.jog.speed_rad_s});
-    lines.add("guard.jog.acceleration_rad_s2", {guard.jog.acceleration_rad_s2});
+    add_scalars(lines, "guard.jog.", jog_keys(), guard.jog);
 }
 
 /// Without a pinned cycle the program chooses stages and lists: they are no part of the machine.
@@ -248,11 +247,7 @@ void add_cycle(Lines& lines, const CycleRules& cycle) {
         return;
     }
     lines.add("cycle.stages", cycle.stages);
-    lines.add("cycle.lists.node_pairs", cycle.lists.node_pairs);
-    lines.add("cycle.lists.leaf_pairs", cycle.lists.leaf_pairs);
-    lines.add("cycle.lists.box_rows", cycle.lists.box_rows);
-    lines.add("cycle.lists.triangle_pairs", cycle.lists.triangle_pairs);
-    lines.add("cycle.lists.rechecks", cycle.lists.rechecks);
+    add_scalars(lines, "cycle.lists.", list_keys(), cycle.lists);
 }
 
 /// Bits, least significant byte first: the hash travels between machines.
@@ -271,9 +266,7 @@ std::string effective_text(const Machine& machine) {
     Lines lines;
     lines.add("version", 1U);
     lines.add("name", machine.name);
-    lines.add("deadline_us", machine.deadline_us);
-    lines.add("engine", static_cast<std::uint32_t>(machine.engine));
-    lines.add("program_speed_mm_s", {machine.program_speed_mm_s});
+    add_scalars(lines, "", top_keys(), machine);
     add_axes(lines, machine);
     add_bodies(lines, machine);
     add_tools(lines, machine);
@@ -284,16 +277,9 @@ std::string effective_text(const Machine& machine) {
         lines.add("output_line.chip", machine.output_line.chip);
         lines.add("output_line.line", machine.output_line.line);
     }
-    lines.add("capacities.node_pairs", machine.capacities.node_pairs);
-    lines.add("capacities.triangle_pairs", machine.capacities.triangle_pairs);
-    lines.add("capacities.rechecks", machine.capacities.rechecks);
+    add_scalars(lines, "capacities.", capacity_keys(), machine.capacities);
     add_cycle(lines, machine.cycle);
-    const BatchCapacities& batch = machine.capacities.batch;
-    lines.add("capacities.batch.level_pairs", batch.level_pairs);
-    lines.add("capacities.batch.leaf_pairs", batch.leaf_pairs);
-    lines.add("capacities.batch.box_rows", batch.box_rows);
-    lines.add("capacities.batch.triangle_pairs", batch.triangle_pairs);
-    lines.add("capacities.batch.rechecks", batch.rechecks);
+    add_scalars(lines, "capacities.batch.", batch_keys(), machine.capacities.batch);
     return lines.text;
 }
 

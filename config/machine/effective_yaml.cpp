@@ -8,11 +8,12 @@
 #include <string_view>
 #include <vector>
 
+#include "config/machine/machine_keys.hpp"
 #include "config/text/fault_list.hpp"
 #include "config/text/machine_draft.hpp"
 #include "config/text/write_yaml.hpp"
 #include "config/text/yaml_tree.hpp"
-#include "core/base/sincos.hpp"
+#include "core/base/finite.hpp"
 
 namespace axg {
 namespace {
@@ -89,6 +90,24 @@ void fill_none(YamlNode& map, std::initializer_list<const char*> keys) {
     }
 }
 
+template <class Owner>
+YamlNode value_in_file(const ScalarKey<Owner>& row, const Owner& owner) {
+    if (row.number != nullptr) {
+        const double value = owner.*row.number;
+        return is_finite(value) ? value_of(value * row.unit.back) : YamlNode{};
+    }
+    return row.whole != nullptr   ? value_of(owner.*row.whole)
+           : row.is_on != nullptr ? value_of(owner.*row.is_on)
+                                  : scalar(std::string(row.words[row.place(owner)]));
+}
+
+template <class Owner>
+void fill_scalars(YamlNode& map, ScalarKeys<Owner> table, const Owner& owner) {
+    for (const ScalarKey<Owner>& row : table) {
+        fill(map, row.key, value_in_file(row, owner));
+    }
+}
+
 /// The map under a key, made if it was left out.
 YamlNode& map_at(YamlNode& parent, const char* key) {
     YamlNode map;
@@ -137,13 +156,7 @@ void fill_mesh(YamlNode& map) {
 void fill_axes(YamlNode& axes, const Machine& machine) {
     for (YamlEntry& entry : axes.entries) {
         const Axis& axis = machine.axes[index_of(machine.axes, entry.key)];
-        const bool is_rotary = axis.kind == AxisKind::rotary;
-        const double unit = is_rotary ? 180.0 / kPi : 1.0;
-        fill_none(entry.value, {is_rotary ? "stopping_most_deg_s2" : "stopping_most_mm_s2"});
-        fill(entry.value, is_rotary ? "position_error_deg" : "position_error_mm",
-             value_of(axis.position_error * unit));
-        fill(entry.value, is_rotary ? "following_error_deg" : "following_error_mm",
-             value_of(axis.following_error * unit));
+        fill_scalars(entry.value, axis_keys(axis.kind), axis);
     }
 }
 
@@ -268,37 +281,18 @@ void fill_can(YamlNode& map, const CanLayout& can) {
 }
 
 void fill_guard(YamlNode& map, const GuardRules& guard) {
-    fill(map, "promise", value_of(to_text(guard.promise)));
-    fill(map, "board_reaction_ms", value_of(guard.board_reaction_s * 1e3));
-    fill(map, "latch_jitter_us", value_of(guard.latch_jitter_s * 1e6));
-    fill(map, "free_jerk", value_of(guard.free_jerk_limited ? "limited" : "any"));
-    fill(map, "obeyed_by", value_of(to_text(guard.obeyed_by)));
-    fill(map, "stop_reversal", value_of(to_text(guard.stop_reversal)));
-    fill(map, "limits_broken", value_of(guard.reports_limits ? "report" : "stop"));
-    fill(map, "travel_enforced", value_of(guard.travel_enforced));
-    fill(map, "travel_proofs", value_of(guard.travel_proofs));
-    fill(map, "overrun_mm", value_of(guard.overrun_mm));
-    fill(map, "overrun_deg", value_of(guard.overrun_rad * (180 / kPi)));
-    fill(map, "speed_cap", value_of(guard.speed_cap));
-    fill(map, "cap_lead_ms", value_of(guard.cap_lead_s * 1e3));
-    fill(map, "cap", value_of(to_text(guard.cap)));
+    constexpr std::size_t kOfLevels = 2;  // the last rows, shown behind slow_mm and warn_mm
+    const auto table = guard_keys();
+    fill_scalars(map, table.first(table.size() - kOfLevels), guard);
     fill(map, "slow_mm", value_of(0U));
     fill(map, "warn_mm", value_of(0U));
-    fill(map, "level_band_mm", value_of(guard.level_band_mm));
-    fill(map, "level_hold_samples", value_of(guard.level_hold_samples));
+    fill_scalars(map, table.last(kOfLevels), guard);
     fill_none(map, {"single_jog"});
 }
 
 void fill_capacities(YamlNode& map, const Capacities& capacities) {
-    fill(map, "node_pairs", value_of(capacities.node_pairs));
-    fill(map, "triangle_pairs", value_of(capacities.triangle_pairs));
-    fill(map, "rechecks", value_of(capacities.rechecks));
-    YamlNode& batch = map_at(map, "batch");
-    fill(batch, "level_pairs", value_of(capacities.batch.level_pairs));
-    fill(batch, "leaf_pairs", value_of(capacities.batch.leaf_pairs));
-    fill(batch, "box_rows", value_of(capacities.batch.box_rows));
-    fill(batch, "triangle_pairs", value_of(capacities.batch.triangle_pairs));
-    fill(batch, "rechecks", value_of(capacities.batch.rechecks));
+    fill_scalars(map, capacity_keys(), capacities);
+    fill_scalars(map_at(map, "batch"), batch_keys(), capacities.batch);
 }
 
 void fill_cycle(YamlNode& top, const CycleRules& cycle) {
@@ -307,21 +301,12 @@ void fill_cycle(YamlNode& top, const CycleRules& cycle) {
         return;
     }
     YamlNode& map = map_at(top, "cycle");
-    fill(map, "stages", value_of(cycle.stages));
-    fill(map, "queries", value_of(cycle.queries));
-    YamlNode& lists = map_at(map, "lists");
-    fill(lists, "node_pairs", value_of(cycle.lists.node_pairs));
-    fill(lists, "leaf_pairs", value_of(cycle.lists.leaf_pairs));
-    fill(lists, "box_rows", value_of(cycle.lists.box_rows));
-    fill(lists, "triangle_pairs", value_of(cycle.lists.triangle_pairs));
-    fill(lists, "rechecks", value_of(cycle.lists.rechecks));
+    fill_scalars(map, cycle_keys(), cycle);
+    fill_scalars(map_at(map, "lists"), list_keys(), cycle.lists);
 }
 
 void fill_top(YamlNode& top, const Machine& machine) {
-    constexpr std::array<const char*, 3> kEngines{"auto", "cpu", "cuda"};
-    fill(top, "deadline_us", value_of(machine.deadline_us));
-    fill(top, "engine", value_of(kEngines.at(static_cast<std::size_t>(machine.engine))));
-    fill(top, "program_speed_mm_min", value_of(machine.program_speed_mm_s * 60.0));
+    fill_scalars(top, top_keys(), machine);
     fill_axes(find(top, "axes")->value, machine);
     fill_bodies(find(top, "bodies")->value);
     if (YamlEntry* const tools = find(top, "tools")) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "config/can/read_can.hpp"
+#include "config/machine/machine_keys.hpp"
 #include "config/machine/parse_machine.hpp"
 #include "config/machine/program_settings.hpp"
 #include "config/machine/read_sections.hpp"
@@ -26,15 +27,7 @@ void read_top(MapReader& top, MachineDraft& draft) {
     std::uint32_t version = 0;
     top.whole("version", Need::required, {1, 1}, version);
     top.text("name", Need::required, 128, machine.name);
-    top.whole("deadline_us", Need::optional, {10, 1'000'000}, machine.deadline_us);
-    constexpr std::array<std::string_view, 3> kEngines = {"auto", "cpu", "cuda"};
-    std::size_t engine = 0;
-    top.choice("engine", Need::optional, kEngines, engine);
-    machine.engine = static_cast<EngineChoice>(engine);
-    double speed_mm_min = 0;
-    if (top.number("program_speed_mm_min", Need::optional, {0.001, 1e6}, speed_mm_min)) {
-        machine.program_speed_mm_s = speed_mm_min / 60.0;
-    }
+    read_scalars(top, top_keys(), machine, machine.states);
     read_axes(top, draft);
     read_bodies(top, draft);
     read_tools(top, draft);

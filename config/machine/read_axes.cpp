@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// The section `axes` of a machine file. Degrees become radians here and nowhere else.
+// The section `axes` of a machine file. Degrees become radians here and in machine_keys.cpp.
 #include <algorithm>
 #include <array>
 #include <utility>
 #include <vector>
 
+#include "config/machine/machine_keys.hpp"
 #include "config/machine/read_sections.hpp"
 #include "config/text/fault_list.hpp"
 #include "config/text/map_reader.hpp"
+#include "config/text/number_text.hpp"
 #include "config/text/quote_text.hpp"
+#include "core/base/finite.hpp"
 #include "core/base/sincos.hpp"
 
 namespace axg {
@@ -16,11 +19,6 @@ namespace {
 
 constexpr Range kTravelMm{-kCoordinateMmMax, kCoordinateMmMax};
 constexpr Range kTravelDeg{-360'000, 360'000};  // a thousand turns; beyond, an axis is unlimited
-constexpr Range kSpeedMmMin{0.001, 1e6};
-constexpr Range kSpeedDegS{0.001, 1e5};
-constexpr Range kRate{0.001, 1e6};  // acceleration and deceleration
-constexpr Range kJerk{0.001, 1e9};
-constexpr Range kErrorMm{0, 100}, kErrorDeg{0, 10};
 // Defaults: an encoder's error from one sample to the next, and a board that reports measured
 // positions.
 constexpr double kPositionErrorMm = 0.001, kPositionErrorDeg = 0.0005;
@@ -61,33 +59,34 @@ void read_travel(MapReader& reader, Axis& axis) {
                       std::string{wanted} + "; swap the two");
         return;
     }
-    axis.min = travel[0];
-    axis.max = travel[1];
+    axis.min = rotary ? travel[0] * kPi / 180.0 : travel[0];
+    axis.max = rotary ? travel[1] * kPi / 180.0 : travel[1];
 }
 
-/// A number, or none: full acceleration and full braking at once.
-void read_jerk(MapReader& reader, const char* key, Axis& axis) {
-    const YamlNode* value = reader.find(key, Need::required, "a number, or none");
-    if (value != nullptr && value->kind == YamlNode::Kind::scalar && value->text == "none") {
-        axis.jerk_max = kNoJerkLimit;
-    } else if (value != nullptr) {
-        reader.number(key, Need::required, kJerk, axis.jerk_max);
+/// The number of a key as the file has it; 0: none that can be read.
+double in_file(const MapReader& reader, std::string_view key) {
+    for (const YamlEntry& entry : reader.node().entries) {
+        if (entry.key == key) {
+            return decimal_number(entry.value.text).value_or(0);
+        }
     }
+    return 0;
 }
 
 /// The hardest stop: no softer than the guaranteed one, nor than free motion may brake.
-void read_stopping_most(MapReader& reader, const char* key, Axis& axis) {
-    double most = 0;
-    if (!reader.number(key, Need::optional, kRate, most)) {
+void check_stopping_most(MapReader& reader, const Axis& axis) {
+    if (!is_finite(axis.stopping_most)) {
         return;
     }
-    const double least = std::max(axis.stopping_min, axis.acceleration_max);
+    const std::string unit = axis.kind == AxisKind::rotary ? "_deg_s2" : "_mm_s2";
+    const double least =
+        std::max(in_file(reader, "stopping" + unit), in_file(reader, "acceleration" + unit));
+    const std::string key = "stopping_most" + unit;
+    const double most = in_file(reader, key);
     if (most < least) {
         reader.report(key, shown(most),
                       "at least " + shown(least) + ", the larger of stopping and acceleration");
-        return;
     }
-    axis.stopping_most = most;
 }
 
 /// The place of an axis on the bus, where the file states it.
@@ -141,69 +140,28 @@ void put_in_order(const std::vector<Slot>& slots, MachineDraft& draft) {
     }
 }
 
-void read_linear(const YamlNode& node, const std::string& path, FaultList& faults, Axis& axis,
-                 Slot& slot) {
-    MapReader reader{
-        node,
-        path,
-        {"kind", "slot", "travel_mm", "speed_mm_min", "acceleration_mm_s2", "jerk_mm_s3",
-         "stopping_mm_s2", "stopping_most_mm_s2", "position_error_mm", "following_error_mm"},
-        faults};
+void read_axis(const YamlNode& node, const std::string& path, FaultList& faults, Axis& axis,
+               Slot& slot) {
+    const bool is_rotary = axis.kind == AxisKind::rotary;
+    const ScalarKeys<Axis> table = axis_keys(axis.kind);
+    MapReader reader{node, path,
+                     keys_of(table, {}, {"kind", "slot", is_rotary ? "travel_deg" : "travel_mm"}),
+                     faults};
     slot = read_slot(reader);
     read_travel(reader, axis);
-    double speed_mm_min = 0;
-    reader.number("speed_mm_min", Need::required, kSpeedMmMin, speed_mm_min);
-    axis.speed_max = speed_mm_min / 60.0;
-    reader.number("acceleration_mm_s2", Need::required, kRate, axis.acceleration_max);
-    read_jerk(reader, "jerk_mm_s3", axis);
-    reader.number("stopping_mm_s2", Need::required, kRate, axis.stopping_min);
-    read_stopping_most(reader, "stopping_most_mm_s2", axis);
-    axis.position_error = kPositionErrorMm;
-    axis.states_position_error =
-        reader.number("position_error_mm", Need::optional, kErrorMm, axis.position_error);
-    axis.states_following_error =
-        reader.number("following_error_mm", Need::optional, kErrorMm, axis.following_error);
-}
-
-void read_rotary(const YamlNode& node, const std::string& path, FaultList& faults, Axis& axis,
-                 Slot& slot) {
-    MapReader reader{
-        node,
-        path,
-        {"kind", "slot", "travel_deg", "speed_deg_s", "acceleration_deg_s2", "jerk_deg_s3",
-         "stopping_deg_s2", "stopping_most_deg_s2", "position_error_deg", "following_error_deg"},
-        faults};
-    slot = read_slot(reader);
-    read_travel(reader, axis);
-    reader.number("speed_deg_s", Need::required, kSpeedDegS, axis.speed_max);
-    reader.number("acceleration_deg_s2", Need::required, kRate, axis.acceleration_max);
-    read_jerk(reader, "jerk_deg_s3", axis);
-    reader.number("stopping_deg_s2", Need::required, kRate, axis.stopping_min);
-    read_stopping_most(reader, "stopping_most_deg_s2", axis);
-    axis.position_error = kPositionErrorDeg;
-    axis.states_position_error =
-        reader.number("position_error_deg", Need::optional, kErrorDeg, axis.position_error);
-    axis.states_following_error =
-        reader.number("following_error_deg", Need::optional, kErrorDeg, axis.following_error);
-    for (double* angle :
-         {&axis.min, &axis.max, &axis.speed_max, &axis.acceleration_max, &axis.stopping_min,
-          &axis.stopping_most, &axis.position_error, &axis.following_error}) {
-        *angle = *angle * kPi / 180.0;
-    }
-    axis.jerk_max = has_jerk_limit(axis) ? axis.jerk_max * kPi / 180.0 : kNoJerkLimit;
+    axis.position_error = is_rotary ? kPositionErrorDeg * kPi / 180.0 : kPositionErrorMm;
+    read_scalars(reader, table, axis, axis);
+    check_stopping_most(reader, axis);
 }
 
 /// Reports a missing or invalid kind of an axis; keys of both kinds are allowed.
 void report_kind(const YamlNode& node, const std::string& path, FaultList& faults) {
     constexpr std::array<std::string_view, 2> kKinds{"linear", "rotary"};
-    MapReader reader{
-        node,
-        path,
-        {"kind", "slot", "travel_mm", "speed_mm_min", "acceleration_mm_s2", "jerk_mm_s3",
-         "stopping_mm_s2", "stopping_most_mm_s2", "travel_deg", "speed_deg_s",
-         "acceleration_deg_s2", "jerk_deg_s3", "stopping_deg_s2", "stopping_most_deg_s2",
-         "position_error_mm", "following_error_mm", "position_error_deg", "following_error_deg"},
-        faults};
+    std::vector<std::string_view> keys =
+        keys_of(axis_keys(AxisKind::linear), {"travel_deg"}, {"kind", "slot", "travel_mm"});
+    const std::vector<std::string_view> rotary = keys_of(axis_keys(AxisKind::rotary));
+    keys.insert(keys.end(), rotary.begin(), rotary.end());
+    MapReader reader{node, path, keys, faults};
     std::size_t kind = 0;
     reader.choice("kind", Need::required, kKinds, kind);
 }
@@ -251,10 +209,8 @@ void read_axes(MapReader& top, MachineDraft& draft) {
         if (!known) {
             report_kind(entry.value, path, draft.faults);
             slots.emplace_back();
-        } else if (axis.kind == AxisKind::rotary) {
-            read_rotary(entry.value, path, draft.faults, axis, slots.emplace_back());
         } else {
-            read_linear(entry.value, path, draft.faults, axis, slots.emplace_back());
+            read_axis(entry.value, path, draft.faults, axis, slots.emplace_back());
         }
         draft.machine.axes.push_back(std::move(axis));
         draft.axis_lines.push_back(entry.line);

@@ -1,22 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cstdint>
-
+// The sections `capacities` and `cycle` of a machine file: lengths of lists.
+#include "config/machine/machine_keys.hpp"
 #include "config/machine/read_sections.hpp"
-#include "config/text/map_reader.hpp"
 
 namespace axg {
 
-namespace {
-
-void read_lists(MapReader reader, WorkLists& out) {
-    reader.whole("node_pairs", Need::optional, {8, 1U << 20U}, out.node_pairs);
-    reader.whole("leaf_pairs", Need::optional, {8, 1U << 20U}, out.leaf_pairs);
-    reader.whole("box_rows", Need::optional, {32, 1U << 24U}, out.box_rows);
-    reader.whole("triangle_pairs", Need::optional, {32, 1U << 24U}, out.triangle_pairs);
-    reader.whole("rechecks", Need::optional, {0, 1U << 20U}, out.rechecks);
+void read_capacities(MapReader& top, MachineDraft& draft) {
+    constexpr const char* kWanted = "a map of list lengths";
+    const YamlNode* section = top.find("capacities", Need::optional, kWanted);
+    if (section == nullptr) {
+        return;
+    }
+    MapReader reader{*section, "capacities", keys_of(capacity_keys(), {"batch"}), draft.faults};
+    Capacities& out = draft.machine.capacities;
+    read_scalars(reader, capacity_keys(), out, draft.machine.states);
+    if (const YamlNode* batch = reader.find("batch", Need::optional, kWanted)) {
+        MapReader lists{*batch, "capacities.batch", keys_of(batch_keys()), draft.faults};
+        read_scalars(lists, batch_keys(), out.batch, draft.machine.states);
+    }
 }
-
-}  // namespace
 
 void read_cycle(MapReader& top, MachineDraft& draft) {
     constexpr const char* kWanted = "auto, or a map, such as {stages: 3}";
@@ -30,17 +32,13 @@ void read_cycle(MapReader& top, MachineDraft& draft) {
         }
         return;
     }
-    MapReader reader{*section, "cycle", {"stages", "queries", "lists"}, draft.faults};
+    MapReader reader{*section, "cycle", keys_of(cycle_keys(), {"lists"}), draft.faults};
     CycleRules& out = draft.machine.cycle;
     out.is_pinned = true;
-    reader.whole("stages", Need::optional, {2, 3}, out.stages);
-    reader.whole("queries", Need::optional, {2, 65'536}, out.queries);
+    read_scalars(reader, cycle_keys(), out, draft.machine.states);
     if (const YamlNode* lists = reader.find("lists", Need::optional, "a map of list lengths")) {
-        read_lists({*lists,
-                    "cycle.lists",
-                    {"node_pairs", "leaf_pairs", "box_rows", "triangle_pairs", "rechecks"},
-                    draft.faults},
-                   out.lists);
+        MapReader lengths{*lists, "cycle.lists", keys_of(list_keys()), draft.faults};
+        read_scalars(lengths, list_keys(), out.lists, draft.machine.states);
     }
 }
 

@@ -3,11 +3,11 @@
 // and stops, the budget of a cycle for proving that a stop ends clear, and the GPIO line.
 #include <array>
 
+#include "config/machine/machine_keys.hpp"
 #include "config/machine/read_sections.hpp"
 #include "config/text/fault_list.hpp"
 #include "config/text/map_reader.hpp"
 #include "config/text/quote_text.hpp"
-#include "core/base/sincos.hpp"
 
 namespace axg {
 namespace {
@@ -51,21 +51,9 @@ void read_jog(MapReader& guard_reader, MachineDraft& draft) {
             "single_jog", "a jog with frames of another format",
             "can.format classical or fd; other formats do not name the axis that may move");
     }
-    MapReader reader{*section,
-                     "guard.single_jog",
-                     {"speed_mm_min", "acceleration_mm_s2", "speed_deg_s", "acceleration_deg_s2"},
-                     draft.faults};
     JogRules& jog = draft.machine.guard.jog;
-    const auto read = [&reader](const char* key, double unit, double& out) {
-        double value = 0;
-        if (reader.number(key, Need::required, {0.001, 100'000}, value)) {
-            out = value * unit;
-        }
-    };
-    read("speed_mm_min", 1 / 60.0, jog.speed_mm_s);
-    read("acceleration_mm_s2", 1, jog.acceleration_mm_s2);
-    read("speed_deg_s", kPi / 180.0, jog.speed_rad_s);
-    read("acceleration_deg_s2", kPi / 180.0, jog.acceleration_rad_s2);
+    MapReader reader{*section, "guard.single_jog", keys_of(jog_keys()), draft.faults};
+    read_scalars(reader, jog_keys(), jog, draft.machine.states);
     jog.is_promised = true;
 }
 
@@ -109,12 +97,7 @@ void check_sync_jitter(MapReader& reader, const Machine& machine) {
     }
 }
 
-void read_free_jerk(MapReader& reader, Machine& machine) {
-    constexpr std::array<std::string_view, 2> kJerk{"any", "limited"};
-    std::size_t jerk = 0;
-    if (reader.choice("free_jerk", Need::optional, kJerk, jerk)) {
-        machine.guard.free_jerk_limited = jerk == 1;
-    }
+void check_free_jerk(MapReader& reader, const Machine& machine) {
     for (const Axis& axis : machine.axes) {
         if (machine.guard.free_jerk_limited && !has_jerk_limit(axis)) {
             reader.report("free_jerk", "limited, and axis " + axis.name + " without a jerk limit",
@@ -131,57 +114,14 @@ void read_guard(MapReader& top, MachineDraft& draft) {
         check_sync_jitter(top, draft.machine);
         return;
     }
-    MapReader reader{*section,
-                     "guard",
-                     {"promise", "board_reaction_ms", "latch_jitter_us", "free_jerk", "obeyed_by",
-                      "stop_reversal", "limits_broken", "travel_enforced", "speed_cap",
-                      "cap_lead_ms", "slow_mm", "warn_mm", "level_band_mm", "level_hold_samples",
-                      "single_jog", "travel_proofs", "overrun_mm", "overrun_deg", "cap"},
+    MapReader reader{*section, "guard", keys_of(guard_keys(), {"slow_mm", "warn_mm", "single_jog"}),
                      draft.faults};
     read_promise(reader, draft.machine);
-    GuardRules& out = draft.machine.guard;
-    constexpr std::array<std::string_view, 3> kObeyedBy{"board", "line", "drives"};
-    std::size_t who = 0;
-    if (reader.choice("obeyed_by", Need::optional, kObeyedBy, who)) {
-        out.obeyed_by = static_cast<ObeyedBy>(who);
-    }
-    StatedPromises& states = draft.machine.states;
-    double value = 0;
-    states.board_reaction_ms = reader.number("board_reaction_ms", Need::optional, {0, 1000}, value);
-    if (states.board_reaction_ms) {
-        out.board_reaction_s = value / 1e3;
-    }
-    states.latch_jitter_us = reader.number("latch_jitter_us", Need::optional, {0, 10'000}, value);
-    if (states.latch_jitter_us) {
-        out.latch_jitter_s = value / 1e6;
-    }
+    read_scalars(reader, guard_keys(), draft.machine.guard, draft.machine.states);
     check_sync_jitter(reader, draft.machine);
-    read_free_jerk(reader, draft.machine);
-    constexpr std::array<std::string_view, 2> kReversals{"none", "jerk_limited"};
-    std::size_t reversal = 0;
-    states.stop_reversal = reader.choice("stop_reversal", Need::optional, kReversals, reversal);
-    if (states.stop_reversal) {
-        out.stop_reversal = static_cast<StopReversal>(reversal);
-    }
-    constexpr std::array<std::string_view, 2> kBroken{"stop", "report"};
-    std::size_t broken = 0;
-    if (reader.choice("limits_broken", Need::optional, kBroken, broken)) {
-        out.reports_limits = broken == 1;
-    }
-    reader.boolean("travel_enforced", Need::optional, out.travel_enforced);
-    reader.boolean("travel_proofs", Need::optional, out.travel_proofs);
-    reader.number("overrun_mm", Need::optional, {0, 100}, out.overrun_mm);
-    if (reader.number("overrun_deg", Need::optional, {0, 10}, value)) {
-        out.overrun_rad = value * (kPi / 180);
-    }
-    reader.boolean("speed_cap", Need::optional, out.speed_cap);
-    if (reader.number("cap_lead_ms", Need::optional, {0, 1000}, value)) {
-        out.cap_lead_s = value / 1e3;
-    }
+    check_free_jerk(reader, draft.machine);
     read_cap(reader, draft);
     read_clearance_levels(reader, draft.usual_clearance_levels);
-    reader.number("level_band_mm", Need::optional, {0, 100}, out.level_band_mm);
-    reader.whole("level_hold_samples", Need::optional, {1, 100'000}, out.level_hold_samples);
     read_jog(reader, draft);
 }
 

@@ -40,12 +40,11 @@ const YamlEntry* entry_of(const YamlNode& node, std::string_view key) noexcept {
 }  // namespace
 
 MapReader::MapReader(const YamlNode& node, std::string path,
-                     std::initializer_list<std::string_view> keys, FaultList& faults)
+                     std::span<const std::string_view> known, FaultList& faults)
     : node_(node), path_(std::move(path)), faults_(faults) {
     if (node.kind == YamlNode::Kind::refused) {
         return;
     }
-    const std::span<const std::string_view> known{keys.begin(), keys.size()};
     if (node.kind != YamlNode::Kind::map) {
         faults_.add(node.line, path_, shown(node), "a map with the keys " + listed(known));
         return;

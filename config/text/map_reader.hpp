@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "config/text/yaml_tree.hpp"
@@ -28,8 +29,11 @@ class MapReader {
   public:
     /// Reports at once a node that is no map and every key that is not among `keys`.
     /// @param path  dotted name of the map, empty at the top
-    MapReader(const YamlNode& node, std::string path, std::initializer_list<std::string_view> keys,
+    MapReader(const YamlNode& node, std::string path, std::span<const std::string_view> keys,
               FaultList& faults);
+    MapReader(const YamlNode& node, std::string path, std::initializer_list<std::string_view> keys,
+              FaultList& faults)
+        : MapReader(node, std::move(path), std::span(keys.begin(), keys.size()), faults) {}
 
     /// The value of a key, or nullptr when it is absent, empty or refused. Reports an
     /// empty value, and an absent one if required, with `wanted`.

@@ -18,6 +18,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "config/machine/machine_keys.hpp"
 #include "config/text/fault_list.hpp"
 #include "config/text/number_text.hpp"
 #include "config/text/yaml_tree.hpp"
@@ -250,6 +251,50 @@ TEST(MachineSchema, RefusesEachMisspeltKeyAsTheLoaderDoes) {
     }
     std::printf("%d keys misspelt\n", count);
     EXPECT_GT(count, 150);
+}
+
+/// Whether the schema has the same kind of value for a row of a table, and the same range.
+template <class Owner>
+bool is_in(const Json& properties, const ScalarKey<Owner>& row) {
+    Json rule = properties.value(row.key, Json::object());
+    if (row.place != nullptr) {
+        return rule["enum"] == Json(std::vector<std::string>(row.words.begin(), row.words.end()));
+    }
+    if (row.is_on != nullptr) {
+        return rule["type"] == "boolean";
+    }
+    if (row.none != 0) {
+        rule = rule["oneOf"][1];
+    }
+    if (rule.contains("enum")) {  // few whole numbers: each of them
+        return rule["enum"].front() == row.range.min && rule["enum"].back() == row.range.max;
+    }
+    return rule["type"] == (row.whole != nullptr ? "integer" : "number") &&
+           rule["minimum"] == row.range.min && rule["maximum"] == row.range.max;
+}
+
+template <class Owner>
+void compare(ScalarKeys<Owner> table, const Json& properties) {
+    for (const ScalarKey<Owner>& row : table) {
+        EXPECT_TRUE(is_in(properties, row)) << row.key;
+    }
+}
+
+TEST(MachineSchema, HasTheRangeOfEachScalarKey) {
+    const Json schema = schema_document();
+    const Json& top = schema["properties"];
+    compare(top_keys(), top);
+    compare(axis_keys(AxisKind::linear), schema["definitions"]["linear_axis"]["properties"]);
+    compare(axis_keys(AxisKind::rotary), schema["definitions"]["rotary_axis"]["properties"]);
+    const Json& guard = top["guard"]["properties"];
+    compare(guard_keys(), guard);
+    compare(jog_keys(), guard["single_jog"]["properties"]);
+    const Json& capacities = top["capacities"]["properties"];
+    compare(capacity_keys(), capacities);
+    compare(batch_keys(), capacities["batch"]["properties"]);
+    const Json& cycle = top["cycle"]["oneOf"][1]["properties"];
+    compare(cycle_keys(), cycle);
+    compare(list_keys(), cycle["lists"]["properties"]);
 }
 
 TEST(MachineSchema, EveryKeyIsExplained) {
