@@ -15,14 +15,6 @@ namespace {
 
 constexpr std::uint32_t kAhead = 12;  // items between a prefetch and its write
 
-void add(WorkLists& sum, const WorkLists& more) noexcept {
-    sum.node_pairs += more.node_pairs;
-    sum.leaf_pairs += more.leaf_pairs;
-    sum.box_rows += more.box_rows;
-    sum.triangle_pairs += more.triangle_pairs;
-    sum.rechecks += more.rechecks;
-}
-
 /// Copies the proof of a larger box to its task.
 void take_proofs(std::span<JointBoxResult> results, std::uint32_t own) noexcept {
     for (std::uint32_t i = 0; i < own; ++i) {
@@ -244,7 +236,7 @@ bool StagedProver::is_lost_by_first_part(const Engine& engine, std::span<const J
     said = QueryResult{};
     engine({&query, 1}, {&said, 1}, {&group, 1});
     note(said.status);
-    add(work.used, group.used);
+    work.used = work.used + group.used;
     if (said.proof == Proof::far || said.status != QueryStatus::ok ||
         first_full(group) != QueryStatus::ok) {
         return false;
@@ -347,12 +339,13 @@ bool StagedProver::run_again(const Engine& engine, std::span<const JointBoxTask>
     for (const BoxItem& item : items_.first(open)) {  // one of each task
         const GroupWork& group = groups_[group_of_[item.task]];
         left_[item.task] = unused_of(group.share, group.used);
-        add(work.used, group.used);
+        work.used = work.used + group.used;
     }
     open = leave_open(results, open);
     deal_groups(open, lists_of_rounds(plan_));
     for (const BoxItem& item : items_.first(open)) {
-        add(groups_[group_of_[item.task]].share, left_[item.task]);
+        WorkLists& share = groups_[group_of_[item.task]].share;
+        share = share + left_[item.task];
     }
     return true;
 }
@@ -403,7 +396,7 @@ bool StagedProver::run_rounds(const Engine& engine, std::span<const JointBoxTask
         depth = round + 1 < kRoundsMax && depth_left != 0 && plan_round(open) ? 1 : 0;
     }
     for (const GroupWork& group : groups_.first(group_count_)) {
-        add(work.used, group.used);
+        work.used = work.used + group.used;
     }
     return true;
 }
@@ -577,7 +570,7 @@ StagedWork StagedProver::prove(const Engine& engine, std::span<const JointBoxTas
             return work;
         }
         for (const GroupWork& group : groups_.first(group_count_)) {
-            add(work.used, group.used);
+            work.used = work.used + group.used;
         }
         open = leave_open(results, open);
         open = is_first && has_wider ? take_wider(results, own, open, halves_wider) : open;

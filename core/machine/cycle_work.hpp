@@ -25,6 +25,32 @@ struct WorkLists {
     friend constexpr bool operator==(const WorkLists&, const WorkLists&) = default;
 };
 
+/// A list by the name that files and reports use.
+struct WorkListName {
+    const char* name;
+    std::uint32_t WorkLists::*list;
+};
+/// All of them, in the order of WorkLists.
+inline constexpr std::array<WorkListName, 5> kWorkLists{
+    {{"node_pairs", &WorkLists::node_pairs},
+     {"leaf_pairs", &WorkLists::leaf_pairs},
+     {"box_rows", &WorkLists::box_rows},
+     {"triangle_pairs", &WorkLists::triangle_pairs},
+     {"rechecks", &WorkLists::rechecks}}};
+
+/// `of` each list of both.
+template <class Of>
+[[nodiscard]] constexpr WorkLists of_each(const WorkLists& a, const WorkLists& b, Of of) noexcept {
+    WorkLists out;
+    for (const WorkListName& one : kWorkLists) {
+        out.*one.list = of(a.*one.list, b.*one.list);
+    }
+    return out;
+}
+[[nodiscard]] constexpr WorkLists operator+(const WorkLists& a, const WorkLists& b) noexcept {
+    return of_each(a, b, [](std::uint32_t x, std::uint32_t y) { return x + y; });
+}
+
 /// An engine tests as many pairs of triangles at a time as it has lanes, and a single one costs as
 /// much as all. So every engine charges a pair of leaves whole batches of the widest engine's
 /// lanes: a full share costs about the same, however its entries are spread over pairs of leaves.
@@ -48,20 +74,20 @@ struct GroupWork {
 /// The share of each of `groups` groups in a stage's lists. It depends on their number, never on
 /// the work of another group. Triangle pairs: whole batches. Precondition: groups > 0.
 [[nodiscard]] constexpr WorkLists share_of(const WorkLists& lists, std::uint32_t groups) noexcept {
-    return {lists.node_pairs / groups, lists.leaf_pairs / groups, lists.box_rows / groups,
-            lists.triangle_pairs / groups / kTriangleBatch * kTriangleBatch,
-            lists.rechecks / groups};
+    WorkLists share;
+    for (const WorkListName& one : kWorkLists) {
+        share.*one.list = lists.*one.list / groups;
+    }
+    share.triangle_pairs = share.triangle_pairs / kTriangleBatch * kTriangleBatch;
+    return share;
 }
 
 /// The unused entries of each list.
 [[nodiscard]] constexpr WorkLists unused_of(const WorkLists& lists,
                                             const WorkLists& used) noexcept {
-    const auto left = [](std::uint32_t of, std::uint32_t without) {
+    return of_each(lists, used, [](std::uint32_t of, std::uint32_t without) {
         return of > without ? of - without : 0;
-    };
-    return {left(lists.node_pairs, used.node_pairs), left(lists.leaf_pairs, used.leaf_pairs),
-            left(lists.box_rows, used.box_rows), left(lists.triangle_pairs, used.triangle_pairs),
-            left(lists.rechecks, used.rechecks)};
+    });
 }
 
 /// The share of a group in stage 1, which may query each pair twice (short and long permit). Each
@@ -205,11 +231,7 @@ inline constexpr std::uint32_t kLastForSecond = 16;
 [[nodiscard]] constexpr WorkLists lists_of(const CyclePlan& plan) noexcept {
     WorkLists sum;
     for (const WorkLists& stage : plan.lists) {
-        sum.node_pairs += stage.node_pairs;
-        sum.leaf_pairs += stage.leaf_pairs;
-        sum.box_rows += stage.box_rows;
-        sum.triangle_pairs += stage.triangle_pairs;
-        sum.rechecks += stage.rechecks;
+        sum = sum + stage;
     }
     return sum;
 }

@@ -146,18 +146,10 @@ bool has_first_part(const CyclePlan& plan, const Stage& stage) noexcept {
            stage.depth <= kTreeDepthOfParts;
 }
 
-WorkLists added(const WorkLists& a, const WorkLists& b) noexcept {
-    return {a.node_pairs + b.node_pairs, a.leaf_pairs + b.leaf_pairs, a.box_rows + b.box_rows,
-            a.triangle_pairs + b.triangle_pairs, a.rechecks + b.rechecks};
-}
-
 /// Work done for a group: at most its share.
 WorkLists done_of(const GroupWork& group) noexcept {
-    return {std::min(group.used.node_pairs, group.share.node_pairs),
-            std::min(group.used.leaf_pairs, group.share.leaf_pairs),
-            std::min(group.used.box_rows, group.share.box_rows),
-            std::min(group.used.triangle_pairs, group.share.triangle_pairs),
-            std::min(group.used.rechecks, group.share.rechecks)};
+    return of_each(group.used, group.share,
+                   [](std::uint32_t used, std::uint32_t share) { return std::min(used, share); });
 }
 
 /// As many corners as a leaf may have at the charge of one: its own, and copies. A leaf with more,
@@ -166,10 +158,6 @@ LeafCorners most_corners(const TreeLeaf& leaf) noexcept {
     LeafCorners corners = corners_of(leaf);
     corners.count = kNodeWidth;
     return corners;
-}
-
-WorkLists twice(const WorkLists& lists) noexcept {
-    return added(lists, lists);
 }
 
 }  // namespace
@@ -182,7 +170,7 @@ const char* name_of(CycleLayout layout) noexcept {
 WorkLists sum_of(const CycleWork& work) noexcept {
     WorkLists sum;
     for (const StageWork& stage : work) {
-        sum = added(sum, stage.lists);
+        sum = sum + stage.lists;
     }
     return sum;
 }
@@ -303,8 +291,9 @@ std::string LongestCycle::make_queries(const CycleShape& shape, const Options& o
     std::uint32_t first_group = 0;
     for (Call& call : calls_) {
         if (call.is_first_part) {
-            std::string fault = deal_group(overflows ? twice(kFirstPartShare) : kFirstPartShare, 1,
-                                           shape.layout, deals);
+            std::string fault =
+                deal_group(overflows ? kFirstPartShare + kFirstPartShare : kFirstPartShare, 1,
+                           shape.layout, deals);
             if (!fault.empty()) {
                 return fault;
             }
@@ -319,7 +308,7 @@ std::string LongestCycle::make_queries(const CycleShape& shape, const Options& o
             WorkLists share = of.share;
             share.rechecks = options.is_float_only ? 0 : share.rechecks;
             std::string fault =
-                deal_group(overflows ? twice(share) : share, of.each, shape.layout, deals);
+                deal_group(overflows ? share + share : share, of.each, shape.layout, deals);
             if (!fault.empty()) {
                 return fault;
             }
@@ -336,7 +325,7 @@ std::string LongestCycle::make_queries(const CycleShape& shape, const Options& o
             }
             const std::uint32_t body = bodies[uses[query]++ % bodies.size()];
             call.bodies.push_back(body);
-            planned_[of.stage].lists = added(planned_[of.stage].lists, work_of(query));
+            planned_[of.stage].lists = planned_[of.stage].lists + work_of(query);
         }
         first_group += call.groups < of.groups ? call.groups : 0;
     }
@@ -451,7 +440,7 @@ void LongestCycle::run(std::span<const Query> queries, std::span<QueryResult> re
         done.queries = planned_[call.stage].queries;
         done.groups = std::max(done.groups, groups_asked);
         for (const GroupWork& group : groups.first(groups_asked)) {
-            done.lists = added(done.lists, done_of(group));
+            done.lists = done.lists + done_of(group);
         }
     }
 }

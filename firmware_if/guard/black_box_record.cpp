@@ -394,10 +394,6 @@ const char* to_text(BlackBoxStatus status) noexcept {
 
 namespace {
 
-constexpr std::array<std::uint32_t WorkLists::*, 5> kLists{
-    &WorkLists::node_pairs, &WorkLists::leaf_pairs, &WorkLists::box_rows,
-    &WorkLists::triangle_pairs, &WorkLists::rechecks};
-
 void write(Writer& out, const CyclePlan& plan) noexcept {
     out.integer(plan.stages, 1);
     out.tag(plan.form);
@@ -405,8 +401,8 @@ void write(Writer& out, const CyclePlan& plan) noexcept {
     out.integer(0, 1);
     for (std::uint32_t stage = 0; stage < kStagesMax; ++stage) {
         out.integer(plan.queries[stage], 4);
-        for (const auto list : kLists) {
-            out.integer(plan.lists[stage].*list, 4);
+        for (const WorkListName& one : kWorkLists) {
+            out.integer(plan.lists[stage].*one.list, 4);
         }
     }
 }
@@ -422,8 +418,8 @@ bool read(Reader& in, CyclePlan& plan) noexcept {
     for (std::uint32_t stage = 0; stage < kStagesMax; ++stage) {
         plan.queries[stage] = in.word();
         in.expect(plan.queries[stage] <= kQueriesMax);
-        for (const auto list : kLists) {
-            plan.lists[stage].*list = in.word();
+        for (const WorkListName& one : kWorkLists) {
+            plan.lists[stage].*one.list = in.word();
         }
     }
     return in.is_sound();

@@ -3,24 +3,33 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace axg {
+
+std::string format_lists(const WorkLists& lists) {
+    std::string text;
+    for (const WorkListName& one : kWorkLists) {
+        text += fmt::format("{}{}: {}", text.empty() ? "" : ", ", one.name, lists.*one.list);
+    }
+    return text;
+}
 
 std::string format_plan(const CyclePlan& plan) {
     const WorkLists lists = lists_of(plan);
-    return fmt::format(
-        "{} stages, {} queries after the first; lists: {} node pairs, {} leaf pairs, {} box rows, "
-        "{} triangle pairs, {} rechecks",
-        plan.stages, queries_of(plan) - plan.queries[0], lists.node_pairs, lists.leaf_pairs,
-        lists.box_rows, lists.triangle_pairs, lists.rechecks);
+    std::string text = fmt::format("{} stages, {} queries after the first; lists:", plan.stages,
+                                   queries_of(plan) - plan.queries[0]);
+    for (const WorkListName& one : kWorkLists) {
+        std::string name = one.name;
+        std::replace(name.begin(), name.end(), '_', ' ');
+        text += fmt::format("{} {} {}", &one == &kWorkLists[0] ? "" : ",", lists.*one.list, name);
+    }
+    return text;
 }
 
 std::string format_plan_key(const CyclePlan& plan) {
-    const WorkLists lists = lists_of(plan);
-    return fmt::format(
-        "cycle: {{stages: {}, queries: {}, lists: {{node_pairs: {}, leaf_pairs: {}, box_rows: {}, "
-        "triangle_pairs: {}, rechecks: {}}}}}",
-        plan.stages, plan.queries[plan.stages - 1], lists.node_pairs, lists.leaf_pairs,
-        lists.box_rows, lists.triangle_pairs, lists.rechecks);
+    return fmt::format("cycle: {{stages: {}, queries: {}, lists: {{{}}}}}", plan.stages,
+                       plan.queries[plan.stages - 1], format_lists(lists_of(plan)));
 }
 
 }  // namespace axg

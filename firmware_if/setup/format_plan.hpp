@@ -8,6 +8,9 @@
 
 namespace axg {
 
+/// "node_pairs: 192, leaf_pairs: 240, ...".
+[[nodiscard]] std::string format_lists(const WorkLists& lists);
+
 /// "3 stages, 544 queries after the first; lists: 512 node pairs, ...".
 [[nodiscard]] std::string format_plan(const CyclePlan& plan);
 

@@ -10,6 +10,7 @@
 #include "config/machine/parse_machine.hpp"
 #include "core/reach/stop_limits.hpp"
 #include "firmware_if/cli/limit_text.hpp"
+#include "firmware_if/setup/format_plan.hpp"
 #include "hil_replay/replay/limit_table.hpp"
 
 namespace axg {
@@ -60,13 +61,12 @@ Setting shown_limits(const Machine& machine, const UnprovenPair& pair, const Lim
 
 Setting larger_plan(const Machine& machine) {
     const CycleRules& rules = machine.cycle;
-    const WorkLists& lists = rules.lists;
-    const auto more = [](std::uint32_t count) { return kMoreWork * count; };
-    return {.lines = {fmt::format(
-                "cycle: {{stages: {}, queries: {}, lists: {{node_pairs: {}, leaf_pairs: {}, "
-                "box_rows: {}, triangle_pairs: {}, rechecks: {}}}}}",
-                rules.stages, more(rules.queries), more(lists.node_pairs), more(lists.leaf_pairs),
-                more(lists.box_rows), more(lists.triangle_pairs), more(lists.rechecks))}};
+    WorkLists lists;
+    for (const WorkListName& one : kWorkLists) {
+        lists.*one.list = kMoreWork * rules.lists.*one.list;
+    }
+    return {.lines = {fmt::format("cycle: {{stages: {}, queries: {}, lists: {{{}}}}}", rules.stages,
+                                  kMoreWork * rules.queries, format_lists(lists))}};
 }
 
 /// Half of the largest speed of the pair's axis that is nearest to its own.

@@ -22,12 +22,11 @@ Json describe(const ChosenPlan& chosen) {
     Json stages = Json::array();
     for (std::uint32_t i = 0; i < chosen.plan.stages; ++i) {
         const WorkLists& lists = chosen.plan.lists[i];
-        stages.push_back({{"queries", chosen.plan.queries[i]},
-                          {"node_pairs", lists.node_pairs},
-                          {"leaf_pairs", lists.leaf_pairs},
-                          {"box_rows", lists.box_rows},
-                          {"triangle_pairs", lists.triangle_pairs},
-                          {"rechecks", lists.rechecks}});
+        Json shown{{"queries", chosen.plan.queries[i]}};
+        for (const WorkListName& one : kWorkLists) {
+            shown[one.name] = lists.*one.list;
+        }
+        stages.push_back(std::move(shown));
     }
     return {{"stages", std::move(stages)},   {"longest_us", chosen.longest_us},
             {"posing_us", chosen.posing_us}, {"share_us", chosen.room_us},

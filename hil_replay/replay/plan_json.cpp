@@ -2,6 +2,7 @@
 #include "hil_replay/replay/plan_json.hpp"
 
 #include <nlohmann/json.hpp>
+#include <utility>
 
 namespace axg {
 
@@ -15,12 +16,11 @@ Json plan_json(const CyclePlan& plan) {
     auto stages = Json::array();
     for (std::uint32_t stage = 0; stage < plan.stages; ++stage) {
         const WorkLists& lists = plan.lists[stage];
-        stages.push_back({{"queries", plan.queries[stage]},
-                          {"node_pairs", lists.node_pairs},
-                          {"leaf_pairs", lists.leaf_pairs},
-                          {"box_rows", lists.box_rows},
-                          {"triangle_pairs", lists.triangle_pairs},
-                          {"rechecks", lists.rechecks}});
+        Json shown{{"queries", plan.queries[stage]}};
+        for (const WorkListName& one : kWorkLists) {
+            shown[one.name] = lists.*one.list;
+        }
+        stages.push_back(std::move(shown));
     }
     return {{"form", plan.form == TreeForm::whole ? "whole" : "leaves"},
             {"depth_max", plan.depth_max},

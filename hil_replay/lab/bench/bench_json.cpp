@@ -30,11 +30,11 @@ Json describe_line(const WorstCaseMeasurement::Line& line) {
 }
 
 Json json_of(const WorkLists& lists) {
-    return {{"node_pairs", lists.node_pairs},
-            {"leaf_pairs", lists.leaf_pairs},
-            {"box_rows", lists.box_rows},
-            {"triangle_pairs", lists.triangle_pairs},
-            {"rechecks", lists.rechecks}};
+    Json out;
+    for (const WorkListName& one : kWorkLists) {
+        out[one.name] = lists.*one.list;
+    }
+    return out;
 }
 
 Json describe_call(const WorstCaseCall& call) {
