@@ -161,8 +161,9 @@ void measure_engine(const AdmissionRun& run, const LoadedMachine& loaded, LiveEn
         return;
     }
     const Engine engine = engines.engine();
-    const auto chain = std::make_unique<GuardChain>(machine, engine, *engines.containment_test,
-                                                    certificate ? &*certificate : nullptr);
+    const auto chain =
+        std::make_unique<GuardChain>(machine, engine, *engines.containment_test,
+                                     ChainParts{certificate ? &*certificate : nullptr});
     CycleFigures cycles;
     cycles.engine = engines.chosen.gpu ? engines.chosen.gpu_name()
                                        : fmt::format("cpu, {} lanes", engines.cpu->lanes());

@@ -236,8 +236,7 @@ int guard_bus(const RunArguments& arguments, LoadedMachine& loaded) {
     threads.status_line = &status_line;
     threads.why = threads.status_socket != nullptr ? &why : nullptr;
     const Engine engine = engines.engine();
-    GuardChain chain(machine, engine, *engines.containment_test, parts.stop_certificate(),
-                     parts.speed_advisory(), parts.margin_advisory());
+    GuardChain chain(machine, engine, *engines.containment_test, parts.chain());
     log_start(arguments, machine);
     log_unstated(machine);
     if (is_stoppable) {

@@ -315,8 +315,7 @@ axg_guard::axg_guard(axg::LoadedMachine&& machine, const axg_options& wanted)
                         loaded.machine.bodies[pair.b].name);
     }
     chain.emplace(loaded.machine, chosen->engine(*parts.engine), *parts.containment_test,
-                  parts.cycle.stop_certificate(), parts.cycle.speed_advisory(),
-                  parts.cycle.margin_advisory());
+                  parts.cycle.chain());
     desk.emplace(loaded, *parts.engine, *parts.containment_test,
                  std::filesystem::path(wanted.machine_file).filename().string());
     options.accepts_local = wanted.takes_local != 0;

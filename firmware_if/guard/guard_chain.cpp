@@ -6,20 +6,21 @@
 namespace axg {
 
 GuardChain::GuardChain(const Machine& machine, Engine engine,
-                       const ContainmentTest& containment_test, StopCertificate* stop_certificate,
-                       SpeedAdvisory* speed_advisory, MarginAdvisory* margin_advisory)
+                       const ContainmentTest& containment_test, const ChainParts& parts)
     : machine_(machine),
       engine_(engine),
       containment_test_(containment_test),
-      stop_certificate_(stop_certificate),
-      speed_advisory_(stop_certificate == nullptr ? nullptr : speed_advisory),
-      margin_advisory_(margin_advisory),
-      cap_guard_(machine) {}
+      parts_(parts),
+      cap_guard_(machine) {
+    if (parts_.stop_certificate == nullptr) {
+        parts_.speed_advisory = nullptr;
+    }
+}
 
 void GuardChain::note_caps(const CapFacts& caps, bool is_first) noexcept {
     std::array<double, kAxesMax> errors{};
     for (std::uint32_t i = 0; i < machine_.axes.size(); ++i) {
-        errors[i] = stop_certificate_->held_error(i);
+        errors[i] = parts_.stop_certificate->held_error(i);
     }
     cap_guard_.note(snapshot_, caps, is_first, errors);
 }
@@ -27,21 +28,22 @@ void GuardChain::note_caps(const CapFacts& caps, bool is_first) noexcept {
 void GuardChain::take(const ReceiverEvent& event, const CapFacts& caps) noexcept {
     if (event.kind == ReceiverEvent::Kind::snapshot) {
         snapshot_ = event.snapshot;
-        if (stop_certificate_ != nullptr) {
+        if (parts_.stop_certificate != nullptr) {
             // Before VALID the receiver may begin anew, and samples are then counted by the clock.
             const bool is_first = event.state != ReceiverState::valid;
-            stop_certificate_->note(snapshot_, is_first);
+            parts_.stop_certificate->note(snapshot_, is_first);
             note_caps(caps, is_first);
         }
-    } else if (event.kind == ReceiverEvent::Kind::look_ahead && stop_certificate_ != nullptr) {
-        stop_certificate_->note_path(event.look_ahead);
+    } else if (event.kind == ReceiverEvent::Kind::look_ahead &&
+               parts_.stop_certificate != nullptr) {
+        parts_.stop_certificate->note_path(event.look_ahead);
     }
 }
 
 void GuardChain::evaluate(const EvaluationClock& clock) {
-    if (stop_certificate_ != nullptr) {
-        cap_guard_.bound(*stop_certificate_);
-        stop_certificate_->prove(engine_, containment_test_);
+    if (parts_.stop_certificate != nullptr) {
+        cap_guard_.bound(*parts_.stop_certificate);
+        parts_.stop_certificate->prove(engine_, containment_test_);
         return;
     }
     make_contact_queries(machine_, snapshot_, pair_queries_, QueryScope::needed);
@@ -80,7 +82,7 @@ void GuardChain::evaluate_in_turn(const EvaluationClock& clock) {
 /// Whether a missing proof stops: while armed, and in an own stop that began under permits. That
 /// stop ends the permits, but the guard stops a board that does not rest in time (left_limits).
 bool GuardChain::owes_stop(bool is_armed) noexcept {
-    const SnapshotStatus status = stop_certificate_->cycle().status;
+    const SnapshotStatus status = parts_.stop_certificate->cycle().status;
     has_own_stop_ = status == SnapshotStatus::own_stop
                         ? has_own_stop_ || is_armed
                         : has_own_stop_ && status == SnapshotStatus::left_limits;
@@ -88,28 +90,29 @@ bool GuardChain::owes_stop(bool is_armed) noexcept {
 }
 
 CycleResult GuardChain::decide(bool ready, bool is_armed) noexcept {
-    if (stop_certificate_ != nullptr) {
-        stop_certificate_->keep();
+    if (parts_.stop_certificate != nullptr) {
+        parts_.stop_certificate->keep();
     }
-    CycleResult result = stop_certificate_ == nullptr
+    CycleResult result = parts_.stop_certificate == nullptr
                              ? judge(pair_queries_, results(), containment_results(), ready)
-                             : judge(stop_certificate_->cycle(), ready, owes_stop(is_armed));
-    if (stop_certificate_ == nullptr) {
+                             : judge(parts_.stop_certificate->cycle(), ready, owes_stop(is_armed));
+    if (parts_.stop_certificate == nullptr) {
         result.samples = machine_.can.permit_samples.least;
     }
-    if (speed_advisory_ != nullptr) {
-        result.advisories.speed_cap = speed_advisory_->cap();
+    if (parts_.speed_advisory != nullptr) {
+        result.advisories.speed_cap = parts_.speed_advisory->cap();
     }
-    if (stop_certificate_ != nullptr && cap_guard_.is_on()) {
-        const bool is_known = speed_advisory_ != nullptr && speed_advisory_->is_known();
-        cap_guard_.judge(stop_certificate_->cycle(), is_known ? &speed_advisory_->wish() : nullptr,
-                         is_armed, result);
+    if (parts_.stop_certificate != nullptr && cap_guard_.is_on()) {
+        const bool is_known = parts_.speed_advisory != nullptr && parts_.speed_advisory->is_known();
+        cap_guard_.judge(parts_.stop_certificate->cycle(),
+                         is_known ? &parts_.speed_advisory->wish() : nullptr, is_armed, result);
     }
-    if (margin_advisory_ != nullptr && margin_advisory_->worst() != kNoIndex) {
-        const std::uint32_t pair = margin_advisory_->worst();
+    if (parts_.margin_advisory != nullptr && parts_.margin_advisory->worst() != kNoIndex) {
+        const std::uint32_t pair = parts_.margin_advisory->worst();
         result.advisories.pair = pair;
-        result.advisories.clearance_level = margin_advisory_->clearance_levels()[pair].level;
-        result.advisories.distance_mm = margin_advisory_->clearance_levels()[pair].distance_mm;
+        result.advisories.clearance_level = parts_.margin_advisory->clearance_levels()[pair].level;
+        result.advisories.distance_mm =
+            parts_.margin_advisory->clearance_levels()[pair].distance_mm;
     }
     return result;
 }
@@ -118,7 +121,7 @@ CycleResult GuardChain::decide(bool ready, bool is_armed) noexcept {
 /// The clocks of an idle GPU would fall and delay the next launch; a lost GPU is detected now.
 /// No decision uses the results: a lost engine proves nothing from then on.
 void GuardChain::keep_awake() noexcept {
-    if (stop_certificate_->work().batches != 0) {
+    if (parts_.stop_certificate->work().batches != 0) {
         return;
     }
     const std::uint32_t mesh = known_answer_mesh_index(machine_);
@@ -128,34 +131,36 @@ void GuardChain::keep_awake() noexcept {
 }
 
 void GuardChain::update_advisories() noexcept {
-    if (stop_certificate_ != nullptr && engine_.host.stages != 0) {
+    if (parts_.stop_certificate != nullptr && engine_.host.stages != 0) {
         keep_awake();
     }
-    if (stop_certificate_ == nullptr) {
-        if (margin_advisory_ != nullptr) {
-            margin_advisory_->update(engine_, pair_queries_, results(), containment_results());
+    if (parts_.stop_certificate == nullptr) {
+        if (parts_.margin_advisory != nullptr) {
+            parts_.margin_advisory->update(engine_, pair_queries_, results(),
+                                           containment_results());
         }
         return;
     }
     // The advisories use, one after the other, the plan's queries that the certificate left.
-    std::uint32_t queries =
-        queries_of(stop_certificate_->plan()) - stop_certificate_->work().planned_queries;
-    if (speed_advisory_ != nullptr) {
+    std::uint32_t queries = queries_of(parts_.stop_certificate->plan()) -
+                            parts_.stop_certificate->work().planned_queries;
+    if (parts_.speed_advisory != nullptr) {
         if (cap_guard_.is_on()) {
-            speed_advisory_->update_order(engine_, *stop_certificate_, queries, cap_guard_.order());
+            parts_.speed_advisory->update_order(engine_, *parts_.stop_certificate, queries,
+                                                cap_guard_.order());
         } else {
-            speed_advisory_->update(engine_, *stop_certificate_, queries);
+            parts_.speed_advisory->update(engine_, *parts_.stop_certificate, queries);
         }
-        queries -= speed_advisory_->queries();
+        queries -= parts_.speed_advisory->queries();
     }
-    if (margin_advisory_ != nullptr) {
-        margin_advisory_->update(engine_, *stop_certificate_, queries);
+    if (parts_.margin_advisory != nullptr) {
+        parts_.margin_advisory->update(engine_, *parts_.stop_certificate, queries);
     }
 }
 
 UnprovenPair GuardChain::unproven(std::uint32_t pair) const noexcept {
-    return stop_certificate_ != nullptr && pair != kNoIndex
-               ? unproven_pair(machine_, *stop_certificate_, pair)
+    return parts_.stop_certificate != nullptr && pair != kNoIndex
+               ? unproven_pair(machine_, *parts_.stop_certificate, pair)
                : UnprovenPair{};
 }
 

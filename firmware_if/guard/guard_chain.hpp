@@ -13,6 +13,7 @@
 #include "core/collision/containment.hpp"
 #include "core/collision/engine.hpp"
 #include "core/guard/cap_guard.hpp"
+#include "core/guard/chain_parts.hpp"
 #include "core/guard/distance_need.hpp"
 #include "core/guard/margin_advisory.hpp"
 #include "core/guard/monitor.hpp"
@@ -48,13 +49,9 @@ static_assert(std::is_trivially_copyable_v<RefusedCycle> && sizeof(RefusedCycle)
 /// sent update_advisories().
 class GuardChain {
   public:
-    /// `machine`, `engine`, `containment_test` and `stop_certificate` must outlive the chain.
-    /// @param stop_certificate  null: contact mode, each sampled pose against its margins
-    /// @param speed_advisory  null, or without a certificate: no speed cap
-    /// @param margin_advisory  null: no clearance levels
+    /// `machine`, `engine`, `containment_test` and all of `parts` must outlive the chain.
     GuardChain(const Machine& machine, Engine engine, const ContainmentTest& containment_test,
-               StopCertificate* stop_certificate, SpeedAdvisory* speed_advisory = nullptr,
-               MarginAdvisory* margin_advisory = nullptr);
+               const ChainParts& parts);
 
     /// Stores an event of the receiver: a snapshot for the queries, a look-ahead path for the
     /// certificate.
@@ -82,14 +79,14 @@ class GuardChain {
     [[nodiscard]] const Engine& engine() const noexcept { return engine_; }
     [[nodiscard]] const AxisSnapshot& snapshot() const noexcept { return snapshot_; }
     [[nodiscard]] const StopCertificate* stop_certificate() const noexcept {
-        return stop_certificate_;
+        return parts_.stop_certificate;
     }
     /// Returns unproven_pair of the last decision; empty in contact mode and without a pair.
     [[nodiscard]] UnprovenPair unproven(std::uint32_t pair) const noexcept;
     /// Returns the last decision, which gave no permit. Call it before update_advisories.
     [[nodiscard]] RefusedCycle refused(const CycleResult& result) const noexcept;
     [[nodiscard]] const MarginAdvisory* margin_advisory() const noexcept {
-        return margin_advisory_;
+        return parts_.margin_advisory;
     }
 
     // Contact mode; empty in stoppable mode.
@@ -115,9 +112,7 @@ class GuardChain {
     const Machine& machine_;
     Engine engine_;
     const ContainmentTest& containment_test_;
-    StopCertificate* stop_certificate_;
-    SpeedAdvisory* speed_advisory_;
-    MarginAdvisory* margin_advisory_;
+    ChainParts parts_;
     CapGuard cap_guard_;
     bool has_own_stop_ = false;  // begun under permits, and not over
     AxisSnapshot snapshot_;

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/certificate/stop_certificate.hpp"
+#include "core/guard/chain_parts.hpp"
 #include "core/guard/margin_advisory.hpp"
 #include "core/guard/speed_advisory.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
@@ -22,7 +23,11 @@ class CycleParts {
 
     /// False: memory ran out (kNoMemoryForProofs).
     [[nodiscard]] bool has_memory() const noexcept { return has_memory_; }
-    // For a GuardChain; null: there is none.
+    /// For a GuardChain.
+    [[nodiscard]] ChainParts chain() noexcept {
+        return {stop_certificate(), speed_advisory(), margin_advisory()};
+    }
+    // Null: there is none.
     [[nodiscard]] StopCertificate* stop_certificate() noexcept { return at(stop_certificate_); }
     [[nodiscard]] SpeedAdvisory* speed_advisory() noexcept { return at(speed_advisory_); }
     [[nodiscard]] MarginAdvisory* margin_advisory() noexcept { return at(margin_advisory_); }

@@ -14,8 +14,7 @@ std::optional<RunEnd> run_board(const LoadedMachine& loaded, const BoardRun& run
     if (!parts.has_memory()) {
         return std::nullopt;
     }
-    GuardChain chain(machine, run.engine, run.containment_test, parts.stop_certificate(),
-                     parts.speed_advisory(), parts.margin_advisory());
+    GuardChain chain(machine, run.engine, run.containment_test, parts.chain());
     DriveOptions options;
     options.board = promised_board(machine, run.seed);
     options.board.tick_us = kMotionStepUs;

@@ -29,7 +29,7 @@ std::optional<RunEnd> run_trace(const LoadedMachine& loaded, const TraceRun& run
     }
     const Machine& machine = loaded.machine;
     ReplayOptions options;
-    options.stop_certificate = parts.stop_certificate();
+    options.parts.stop_certificate = parts.stop_certificate();
     options.deadline_us = machine.deadline_us;
     options.hashes = configuration_hashes(machine, loaded.meshes);
     const auto replay =

@@ -218,8 +218,7 @@ int judge(const BlackBoxArguments& arguments, BlackBoxFile& black_box, const Loa
           Engine engine, const ContainmentTest& containment_test, CycleParts& parts) {
     std::FILE* const words = arguments.json.words();
     const Machine& machine = loaded.machine;
-    GuardChain chain(machine, engine, containment_test, parts.stop_certificate(),
-                     parts.speed_advisory(), parts.margin_advisory());
+    GuardChain chain(machine, engine, containment_test, parts.chain());
     LiveOptions options;
     options.accepts_local = black_box.header().accepts_local;
     options.hashes = configuration_hashes(machine, loaded.meshes);

@@ -282,8 +282,7 @@ int run_drive(const DriveArguments& arguments) {
     if (chosen.refusal != EngineRefusal::none) {
         return exit_code_of(chosen.refusal);
     }
-    GuardChain chain(machine, chosen.engine(engine), containment_test, parts.stop_certificate(),
-                     parts.speed_advisory(), parts.margin_advisory());
+    GuardChain chain(machine, chosen.engine(engine), containment_test, parts.chain());
     double speed_share = 1.0 / kSpeedCapRapid, lost_s = 0;
     const bool keeps_cap = machine.guard.cap != CapPromise::none;
     const bool is_slowed = arguments.obeys_cap || parts.margin_advisory() != nullptr || keeps_cap;

@@ -234,9 +234,7 @@ int replay_dump(const ReplayArguments& arguments, LoadedMachine& loaded) {
 ReplayOptions run_options_of(const ReplayArguments& arguments, const LoadedMachine& loaded,
                              CycleParts& parts, Outputs& outputs) {
     ReplayOptions options;
-    options.stop_certificate = parts.stop_certificate();
-    options.speed_advisory = parts.speed_advisory();
-    options.margin_advisory = parts.margin_advisory();
+    options.parts = parts.chain();
     options.deadline_us =
         arguments.deadline_us != 0 ? arguments.deadline_us : loaded.machine.deadline_us;
     options.keep_going = arguments.keep_going;

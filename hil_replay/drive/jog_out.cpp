@@ -71,7 +71,7 @@ std::optional<DriveResult> jog_once(const LoadedMachine& loaded, const Engine& e
     if (!certificate) {
         return std::nullopt;
     }
-    GuardChain chain(machine, engine, containment_test, &*certificate);
+    GuardChain chain(machine, engine, containment_test, {&*certificate});
     DriveOptions options;
     options.board = before.board;
     options.board.jog = move;

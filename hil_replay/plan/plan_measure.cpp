@@ -247,7 +247,7 @@ bool measure_trace(LoadedMachine loaded, const ModelScene& scene, const Engine& 
             }
         };
         ReplayOptions options;
-        options.stop_certificate = &*certificate;
+        options.parts.stop_certificate = &*certificate;
         options.deadline_us = loaded.machine.deadline_us;
         options.keep_going = true;
         options.clock.now_ns = &steady_ns;

@@ -53,8 +53,7 @@ bool is_in_motion(const Machine& machine, const AxisSnapshot& before, const Axis
 ReplayRun::ReplayRun(const Machine& machine, Engine engine, const ContainmentTest& containment_test,
                      const ReplayOptions& options, std::function<void(const ReplayCycle&)> observe)
     : machine_(machine),
-      chain_(machine, engine, containment_test, options.stop_certificate, options.speed_advisory,
-             options.margin_advisory),
+      chain_(machine, engine, containment_test, options.parts),
       options_(options),
       observe_(std::move(observe)),
       live_{.machine = machine, .chain = chain_, .clock = options.clock},

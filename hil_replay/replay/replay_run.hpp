@@ -34,11 +34,9 @@ inline constexpr std::int64_t kAfterStopUs = 10'000;  // after a stop, frames ar
 inline constexpr std::int64_t kHoleUs = 10'000'000;
 
 struct ReplayOptions {
-    StopCertificate* stop_certificate = nullptr;  // null: contact mode. It must outlive the run
-    SpeedAdvisory* speed_advisory = nullptr;      // null: no speed cap. So must this
-    MarginAdvisory* margin_advisory = nullptr;    // null: no clearance levels. And this
-    std::int64_t deadline_us = 0;                 // above it a cycle is counted as late
-    bool keep_going = false;                      // judge the samples after a stop too
+    ChainParts parts{};            // each must outlive the run
+    std::int64_t deadline_us = 0;  // above it a cycle is counted as late
+    bool keep_going = false;       // judge the samples after a stop too
     bool is_realtime = false;  // a late cycle has no permit, as live; else late ones are counted
     std::int64_t arm_from_us = INT64_MIN;  // of the trace; before, a guard that is ready waits
     ConfigurationHashes hashes{};          // of the machine, for a board in the trace that has them

@@ -279,8 +279,8 @@ class ApproachRun {
         std::optional<StopCertificate> certificate = make_stop_certificate(scene_.loaded);
         std::optional<SpeedAdvisory> advisory =
             promise != CapPromise::none ? SpeedAdvisory::create(machine_) : std::nullopt;
-        GuardChain chain(machine_, scene_.engine->engine(), *scene_.containment_test, &*certificate,
-                         advisory ? &*advisory : nullptr);
+        GuardChain chain(machine_, scene_.engine->engine(), *scene_.containment_test,
+                         {&*certificate, advisory ? &*advisory : nullptr});
         LazyMotion motion(of_board_, drawn_.approach,
                           wrong_ == Wrong::ignored ? CapPromise::none : promise, drawn_.story);
         const BoardOptions options = board_options(motion);

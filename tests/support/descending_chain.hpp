@@ -18,7 +18,7 @@ class DescendingChain {
   public:
     explicit DescendingChain(bool is_stoppable)
         : chain(machine(), paper.engine->engine(), *paper.containment_test,
-                is_stoppable ? &*certificate : nullptr) {
+                {is_stoppable ? &*certificate : nullptr}) {
         snapshot_.axis_count = static_cast<std::uint32_t>(machine().axes.size());
         snapshot_.position = default_start(machine());
         snapshot_.tool = machine().first_tool;

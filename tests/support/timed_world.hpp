@@ -84,7 +84,7 @@ class TimedWorld {
     std::optional<TimedGuard> guard;
 
     void start(std::int64_t now_us = kStartUs) {
-        chain_.emplace(machine, answers.engine(), answers.containment_test(), nullptr);
+        chain_.emplace(machine, answers.engine(), answers.containment_test(), ChainParts{});
         encoder_.emplace(machine);
         guard.emplace(LiveEngine{.machine = machine, .chain = *chain_}, options, now_us);
     }

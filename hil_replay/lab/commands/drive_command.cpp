@@ -89,7 +89,7 @@ int run_ablated(const AblatedDrive& run) {
         fmt::print(stderr, "{}\n", engine ? kNoMemoryForProofs : kNoLaneSet);
         return kExitUnfit;
     }
-    GuardChain chain(machine, engine->engine(), *containment_test, &*certificate);
+    GuardChain chain(machine, engine->engine(), *containment_test, {&*certificate});
     const MotionLimits limits = make_motion_limits(machine);
     const MotionOptions motion;
     const Program& program = reading.program;

@@ -100,7 +100,7 @@ Decisions replayed(const LoadedMachine& loaded, const ContainmentTest& containme
     std::optional<StopCertificate> certificate =
         is_stoppable ? make_stop_certificate(loaded) : std::nullopt;
     ReplayOptions options;
-    options.stop_certificate = certificate ? &*certificate : nullptr;
+    options.parts.stop_certificate = certificate ? &*certificate : nullptr;
     options.deadline_us = 1'000'000'000;
     options.keep_going = true;
     Decisions out;

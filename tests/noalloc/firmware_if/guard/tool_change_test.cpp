@@ -65,8 +65,8 @@ class ToolChange : public NoAllocation {
     };
     Sent run(const std::vector<CanFrame>& frames, StopCertificate* stop_certificate,
              SpeedAdvisory* advisory = nullptr) {
-        GuardChain chain(loaded.machine, engine->engine(), *containment_test, stop_certificate,
-                         advisory);
+        GuardChain chain(loaded.machine, engine->engine(), *containment_test,
+                         {stop_certificate, advisory});
         AckLedger ledger;
         std::uint8_t live = 0;
         AxisReceiver receiver(loaded.machine);

@@ -80,9 +80,9 @@ TEST_F(NoAllocation, InAReplayFromItsFirstFrameToItsLast) {
          {Way{nullptr, 10'000'000}, Way{nullptr, 1}, Way{&*certificate, 10'000'000},
           Way{&*certificate, 1}}) {
         ReplayOptions options;
-        options.stop_certificate = stop_certificate;
-        options.speed_advisory = &*advisory;
-        options.margin_advisory = &*margin_advisory;
+        options.parts.stop_certificate = stop_certificate;
+        options.parts.speed_advisory = &*advisory;
+        options.parts.margin_advisory = &*margin_advisory;
         options.deadline_us = deadline_us;
         options.keep_going = true;  // through the stop, and every episode after it
         options.clock.now_ns = &steady_ns;
@@ -122,7 +122,7 @@ TEST_F(NoAllocation, InAReplayAlongALookAheadPath) {
     std::optional<StopCertificate> certificate = make_stop_certificate(paper.loaded);
     ASSERT_TRUE(certificate.has_value());
     ReplayOptions options;
-    options.stop_certificate = &*certificate;
+    options.parts.stop_certificate = &*certificate;
     options.deadline_us = 10'000'000;
     options.keep_going = true;
     options.clock.now_ns = &steady_ns;

@@ -317,7 +317,7 @@ DriveResult drive_for(LoadedMachine& loaded, const char* name, std::uint64_t sec
     std::optional<CpuEngine> engine = make_engine(loaded);
     const std::optional<ContainmentTest> containment_test = make_containment_test(loaded, *engine);
     std::optional<StopCertificate> certificate = make_stop_certificate(loaded);
-    GuardChain chain(machine, engine->engine(), *containment_test, &*certificate);
+    GuardChain chain(machine, engine->engine(), *containment_test, {&*certificate});
     const Program program = read_example(name, machine, seconds / 10 + 1);
     const MotionLimits limits = make_motion_limits(machine);
     const MotionOptions motion;

@@ -107,7 +107,7 @@ double drive_jog(Random& random, ContactScene& scene, const Place& place, const 
     Machine& machine = scene.machine();
     set_margins(machine, place.margin_mm);
     std::optional<StopCertificate> certificate = make_stop_certificate(scene.loaded);
-    GuardChain chain(machine, scene.engine->engine(), *scene.containment_test, &*certificate);
+    GuardChain chain(machine, scene.engine->engine(), *scene.containment_test, {&*certificate});
     DriveOptions options;
     options.board = promised_board(machine, random());
     options.board.jog = move;

@@ -169,7 +169,7 @@ DriveResult drive_watched(ContactScene& scene, Guard guard, const Drawn& drawn, 
     std::optional<SpeedAdvisory> advisory =
         has_cap ? SpeedAdvisory::create(of_guard.machine) : std::nullopt;
     GuardChain chain(scene.machine(), scene.engine->engine(), *scene.containment_test,
-                     certificate ? &*certificate : nullptr, advisory ? &*advisory : nullptr);
+                     {certificate ? &*certificate : nullptr, advisory ? &*advisory : nullptr});
     DriveObservers observers;
     observers.watch_us = kWatchUs;
     observers.watch = [&](std::int64_t, std::span<const AxisMotion> axes) { watcher.look(axes); };

@@ -48,7 +48,7 @@ CappedRun drive_capped(LoadedMachine& loaded, const Program& program, bool obeys
     const std::optional<ContainmentTest> containment_test = make_containment_test(loaded, *engine);
     std::optional<StopCertificate> certificate = make_stop_certificate(loaded);
     std::optional<SpeedAdvisory> advisory = SpeedAdvisory::create(machine);
-    GuardChain chain(machine, engine->engine(), *containment_test, &*certificate, &*advisory);
+    GuardChain chain(machine, engine->engine(), *containment_test, {&*certificate, &*advisory});
     const MotionLimits limits = make_motion_limits(machine);
     const MotionOptions motion;
     double share = 1.0 / kSpeedCapRapid;

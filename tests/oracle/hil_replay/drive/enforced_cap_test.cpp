@@ -51,7 +51,7 @@ CapRun drive_with(const Example& example, const CapCase& one) {
     GuardParts parts(loaded, true);
     EXPECT_TRUE(parts.fault().empty());
     GuardChain chain(machine, parts.engine->engine(), *parts.containment_test,
-                     parts.cycle.stop_certificate(), parts.cycle.speed_advisory());
+                     {parts.cycle.stop_certificate(), parts.cycle.speed_advisory()});
     PathJudge judge(machine, parts.engine->engine(), *parts.containment_test);
     const MotionLimits limits = make_motion_limits(machine);
     const MotionOptions motion;

@@ -101,7 +101,7 @@ DriveResult drive_far(ApproachScene& scene, std::uint64_t seed, std::uint32_t st
     machine.can.permit_samples = kPermitSamplesUsual;
     machine.can.stale_after_us = 1000 * stale_samples;
     std::optional<StopCertificate> certificate = make_stop_certificate(scene.loaded);
-    GuardChain chain(machine, scene.engine->engine(), *scene.containment_test, &*certificate);
+    GuardChain chain(machine, scene.engine->engine(), *scene.containment_test, {&*certificate});
     Approach approach;
     approach.target = {-250, 200, 250};
     approach.speed_share.fill(0.2);

@@ -150,7 +150,7 @@ TEST(TimedGuardProperty, SendsWhatAGuardNodeSendsWhenItSendsIt) {
             test::TimedWorld::kBeginUs - static_cast<std::int64_t>(dice.in(0, 5000));
         world.start(start_us);
         test::KnownAnswerEngine answers;
-        GuardChain chain(world.machine, answers.engine(), answers.containment_test(), nullptr);
+        GuardChain chain(world.machine, answers.engine(), answers.containment_test(), {});
         TickedGuard ticked({.machine = world.machine, .chain = chain}, start_us);
         ticked.response_us = world.response_us;
         std::int64_t now_us = world.guard->now_us();

@@ -56,7 +56,7 @@ struct Parts {
     Parts(const CompiledMachine& loaded, CpuEngine& engine, const ContainmentTest& containment_test)
         : certificate(make_stop_certificate(loaded)),
           advisory(SpeedAdvisory::create(loaded.machine)),
-          chain(loaded.machine, engine.engine(), containment_test, &*certificate, &*advisory) {}
+          chain(loaded.machine, engine.engine(), containment_test, {&*certificate, &*advisory}) {}
 
     std::optional<StopCertificate> certificate;
     std::optional<SpeedAdvisory> advisory;

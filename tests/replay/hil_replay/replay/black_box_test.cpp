@@ -37,7 +37,7 @@ class RecordedWorld {
           cpu_(make_engine(loaded)),
           containment_test_(make_containment_test(loaded, *cpu_)),
           certificate_(make_stop_certificate(loaded)),
-          chain_(loaded.machine, cpu_->engine(), *containment_test_, &*certificate_) {
+          chain_(loaded.machine, cpu_->engine(), *containment_test_, {&*certificate_}) {
         std::copy_n(configuration_hash(loaded.machine, loaded.meshes).begin(), 64,
                     header.configuration.begin());
         header.is_stoppable = true;

@@ -22,8 +22,8 @@ TEST(LiveEngine, APermitWaitsForNoSpeedCap) {
     std::optional<StopCertificate> certificate = make_stop_certificate(paper.loaded);
     std::optional<SpeedAdvisory> advisory = SpeedAdvisory::create(machine);
     ASSERT_TRUE(paper.engine && paper.containment_test && certificate && advisory);
-    GuardChain chain(machine, paper.engine->engine(), *paper.containment_test, &*certificate,
-                     &*advisory);
+    GuardChain chain(machine, paper.engine->engine(), *paper.containment_test,
+                     {&*certificate, &*advisory});
     const LiveEngine live{machine, chain};
     const auto queues = std::make_unique<LiveQueues>();
     LiveQuery query;
@@ -115,7 +115,7 @@ TEST(LiveEngine, AGpuThatNoStageWentToIsKeptAwake) {
         if (at == Case::lost_by_first_part) {
             engine.host = {of_host, &near, NearHost::run_groups};
         }
-        GuardChain chain(machine, engine, *paper.containment_test, &*certificate);
+        GuardChain chain(machine, engine, *paper.containment_test, {&*certificate});
         ReceiverEvent event;
         event.kind = ReceiverEvent::Kind::snapshot;
         event.state = ReceiverState::valid;

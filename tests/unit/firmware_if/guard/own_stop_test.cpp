@@ -181,7 +181,7 @@ class OwnStopChain : public testing::Test {
     Machine m = with_one_tool();
     ContainmentScene scene = table_and_head_scene();
     StopCertificate certificate = certificate_over(scene, m);
-    GuardChain chain{m, scene.engine().engine(), scene.containment_test(), &certificate};
+    GuardChain chain{m, scene.engine().engine(), scene.containment_test(), {&certificate}};
 };
 
 // Begun under permits it owes rest; the guard, armed no more, stops what does not come to rest,
