@@ -13,6 +13,7 @@
 #include "config/text/map_reader.hpp"
 #include "config/text/quote_text.hpp"
 #include "core/base/sincos.hpp"
+#include "core/machine/frame_ids.hpp"
 #include "core/reach/look_ahead_path.hpp"
 
 namespace axg {
@@ -114,24 +115,17 @@ void read_single_ids(const YamlNode& node, std::size_t frames, MachineDraft& dra
     CanLayout& can = draft.machine.can;
     FaultList& faults = draft.faults;
     const bool has_hashes = can.hashes_in_id != 0;
-    MapReader reader{
-        node,
-        "can.ids",
-        {"sync", "axes", "permit", "stop", "emergency", "heartbeat_in", "heartbeat_out",
-         "hashes_in", "hashes_out", "session_in", "hints", "operator_in", "operator_out"},
-        faults};
-    reader.can_id("sync", Need::optional, kCanId, can.sync_id);
-    reader.can_id("permit", Need::optional, {kCanId.min, kCanId.max - 1}, can.permit_id);
-    reader.can_id("stop", Need::optional, kCanId, can.stop_id);
-    reader.can_id("emergency", Need::optional, kCanId, can.emergency_id);
-    reader.can_id("heartbeat_in", Need::optional, kCanId, can.heartbeat_in_id);
-    reader.can_id("heartbeat_out", Need::optional, kCanId, can.heartbeat_out_id);
-    reader.can_id("hashes_in", Need::optional, kCanId, can.hashes_in_id);
-    reader.can_id("hashes_out", Need::optional, kCanId, can.hashes_out_id);
-    reader.can_id("session_in", Need::optional, kCanId, can.session_in_id);
-    reader.can_id("hints", Need::optional, kCanId, can.hints_id);
-    reader.can_id("operator_in", Need::optional, kCanId, can.operator_in_id);
-    reader.can_id("operator_out", Need::optional, kCanId, can.operator_out_id);
+    std::vector<std::string_view> keys;
+    for (const FrameId& row : kFrameIds) {
+        keys.emplace_back(row.key);
+    }
+    keys.insert(keys.begin() + 1, "axes");
+    MapReader reader{node, "can.ids", keys, faults};
+    for (const FrameId& row : kFrameIds) {
+        const bool has_twin = row.id == &CanLayout::permit_id;
+        reader.can_id(row.key, Need::optional, {kCanId.min, kCanId.max - (has_twin ? 1U : 0U)},
+                      can.*row.id);
+    }
     for (const char* const key : {"hashes_in", "hashes_out"}) {
         if (!has_hashes && reader.has(key)) {
             reader.report(key, "an id of hashes with hashes: none", "hashes: required, or no id");
@@ -172,25 +166,17 @@ void read_frame_ids(MapReader& reader, MachineDraft& draft) {
         read_ids(reader, "data_ids", {0, 0xFFFF}, frames, draft.faults, can.data_ids);
     }
     read_quick_stops(reader, draft.faults, can.quick_stop_ids);
-    std::vector<NamedId> all{{can.sync_id, "sync"},
-                             {can.permit_id, "permit"},
-                             {can.permit_id + 1, "the permit's twin"},
-                             {can.stop_id, "stop"},
-                             {can.emergency_id, "emergency"},
-                             {can.heartbeat_in_id, "heartbeat_in"},
-                             {can.heartbeat_out_id, "heartbeat_out"}};
+    std::vector<NamedId> all;
+    for (const FrameId& row : kFrameIds) {
+        if (is_stated(can, row.use)) {
+            all.push_back({can.*row.id, row.key});
+        }
+        if (row.id == &CanLayout::permit_id) {
+            all.push_back({can.permit_id + 1, "the permit's twin"});
+        }
+    }
     if (can.look_ahead_samples != 0) {
         all.push_back({can.look_ahead_id, "ahead"});
-    }
-    if (can.hashes_in_id != 0 && can.hashes_out_id != 0) {
-        all.push_back({can.hashes_in_id, "hashes_in"});
-        all.push_back({can.hashes_out_id, "hashes_out"});
-    }
-    if (has_sample_counter(can)) {
-        all.push_back({can.session_in_id, "session_in"});
-        all.push_back({can.hints_id, "hints"});
-        all.push_back({can.operator_in_id, "operator_in"});
-        all.push_back({can.operator_out_id, "operator_out"});
     }
     for (std::size_t i = 0; i < can.axis_ids.size(); ++i) {
         all.push_back({can.axis_ids[i], "axes[" + std::to_string(i) + ']'});

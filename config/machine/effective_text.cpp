@@ -15,6 +15,7 @@
 #include "config/mesh/load_meshes.hpp"
 #include "config/text/quote_text.hpp"
 #include "core/base/finite.hpp"
+#include "core/machine/frame_ids.hpp"
 
 namespace axg {
 namespace {
@@ -209,10 +210,11 @@ void add_can(Lines& lines, const CanLayout& can) {
     }
     if (has_sample_counter(can)) {
         lines.add("can.permit_version", 2U);
-        lines.add("can.session_in", can.session_in_id);
-        lines.add("can.hints", can.hints_id);
-        lines.add("can.operator_in", can.operator_in_id);
-        lines.add("can.operator_out", can.operator_out_id);
+        for (const FrameId& row : kFrameIds) {
+            if (row.use == FrameUse::counter) {
+                lines.add(std::string("can.") + row.key, can.*row.id);
+            }
+        }
     }
     for (std::size_t i = 0; i < can.quick_stop_ids.size(); ++i) {
         lines.add("can.quick_stop[" + std::to_string(i) + "]", can.quick_stop_ids[i]);

@@ -14,6 +14,7 @@
 #include "config/text/write_yaml.hpp"
 #include "config/text/yaml_tree.hpp"
 #include "core/base/finite.hpp"
+#include "core/machine/frame_ids.hpp"
 
 namespace axg {
 namespace {
@@ -203,24 +204,8 @@ void fill_ids(YamlNode& ids, const CanLayout& can) {
     if (is_native(can)) {
         fill(ids, "axes", ids_of(can.axis_ids));
     }
-    fill(ids, "permit", id_of(can.permit_id));
-    fill(ids, "stop", id_of(can.stop_id));
-    fill(ids, "emergency", id_of(can.emergency_id));
-    fill(ids, "heartbeat_in", id_of(can.heartbeat_in_id));
-    fill(ids, "heartbeat_out", id_of(can.heartbeat_out_id));
-    if (can.hashes_in_id != 0) {
-        fill(ids, "hashes_in", id_of(can.hashes_in_id));
-        fill(ids, "hashes_out", id_of(can.hashes_out_id));
-    } else {
-        fill_none(ids, {"hashes_in", "hashes_out"});
-    }
-    if (has_sample_counter(can)) {
-        fill(ids, "session_in", id_of(can.session_in_id));
-        fill(ids, "hints", id_of(can.hints_id));
-        fill(ids, "operator_in", id_of(can.operator_in_id));
-        fill(ids, "operator_out", id_of(can.operator_out_id));
-    } else {
-        fill_none(ids, {"session_in", "hints", "operator_in", "operator_out"});
+    for (const FrameId& row : kFrameIds) {
+        fill(ids, row.key, is_stated(can, row.use) ? id_of(can.*row.id) : YamlNode{});
     }
 }
 

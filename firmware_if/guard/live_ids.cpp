@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/base/assert.hpp"
+#include "core/machine/frame_ids.hpp"
 
 namespace axg {
 
@@ -21,23 +22,11 @@ std::uint32_t live_ids(const Machine& machine, std::span<std::uint32_t> out) noe
     if (set.look_ahead_samples != 0) {
         add(set.look_ahead_id);
     }
-    if (has_sync(wire_of(can))) {
-        add(can.sync_id);
-        add(can.heartbeat_in_id);
-    }
-    for (const std::uint32_t id :
-         {can.permit_id, can.permit_id + 1, can.stop_id, can.emergency_id, can.heartbeat_out_id}) {
-        add(id);
-    }
-    if (set.session_id != 0) {
-        add(set.session_id);
-        add(can.hints_id);
-        add(can.operator_in_id);
-        add(can.operator_out_id);
-    }
-    if (can.hashes_out_id != 0) {
-        add(can.hashes_in_id);
-        add(can.hashes_out_id);
+    add(can.permit_id + 1);
+    for (const FrameId& row : kFrameIds) {
+        if (is_used(can, row.use)) {
+            add(can.*row.id);
+        }
     }
     for (const std::uint32_t id : can.quick_stop_ids) {
         add(id);
@@ -46,10 +35,11 @@ std::uint32_t live_ids(const Machine& machine, std::span<std::uint32_t> out) noe
 }
 
 bool is_guard_id(const CanLayout& can, std::uint32_t id) noexcept {
-    return id == can.permit_id || id == can.permit_id + 1 || id == can.emergency_id ||
-           id == can.heartbeat_out_id || (id == can.hashes_out_id && id != 0) ||
-           (has_sample_counter(can) && (id == can.hints_id || id == can.operator_out_id)) ||
-           (can.guard_sends_sync && id == can.sync_id) ||
+    const auto has_id = [&](const FrameId& row) {
+        return row.is_of_guard && is_used(can, row.use) && can.*row.id == id;
+    };
+    return id == can.permit_id + 1 || (can.guard_sends_sync && id == can.sync_id) ||
+           std::any_of(kFrameIds.begin(), kFrameIds.end(), has_id) ||
            std::find(can.quick_stop_ids.begin(), can.quick_stop_ids.end(), id) !=
                can.quick_stop_ids.end();
 }
