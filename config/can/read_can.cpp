@@ -35,10 +35,25 @@ std::string hex(std::uint32_t id) {
     return buffer.data();
 }
 
-constexpr std::array<std::string_view, 5> kSources{"classical", "fd", "signals", "dbc", "cia402"};
+/// A DBC file only locates the signals: the receiver reads them like those of format: signals.
+struct CanSource {
+    std::string_view name;
+    CanFormat format;
+};
+constexpr auto kSources = [] {
+    std::array<CanSource, kWireFormats.size() + 1> out{};
+    std::size_t count = 0;
+    for (const WireFormat& wire : kWireFormats) {
+        out[count++] = {wire.name, wire.format};
+        if (wire.format == CanFormat::signals) {
+            out[count++] = {"dbc", wire.format};
+        }
+    }
+    return out;
+}();
 
 std::string source_of(const MachineDraft& draft) {
-    return std::string{kSources[static_cast<std::size_t>(draft.can_source)]};
+    return std::string{draft.can_source};
 }
 
 /// A list of exactly `count` numbers in hexadecimal or decimal; what is read replaces `out`.
@@ -400,12 +415,15 @@ void check_reach(MapReader& top, MachineDraft& draft) {
     }
 }
 
-/// A DBC file only locates the signals: the receiver reads them like those of format: signals.
-CanFormat format_of(std::string_view source) noexcept {
-    const auto* const row =
-        std::find_if(kWireFormats.begin(), kWireFormats.end(),
-                     [&](const WireFormat& wire) { return wire.name == source; });
-    return row != kWireFormats.end() ? row->format : CanFormat::signals;
+void read_source(MapReader& reader, MachineDraft& draft) {
+    std::array<std::string_view, kSources.size()> names;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        names[i] = kSources[i].name;
+    }
+    std::size_t source = 0;
+    reader.choice("format", Need::optional, names, source);
+    draft.can_source = names[source];
+    draft.machine.can.format = kSources[source].format;
 }
 
 }  // namespace
@@ -443,10 +461,7 @@ void read_can(MapReader& top, MachineDraft& draft) {
                       "heartbeat_timeout_us",
                       "quick_stop"},
                      draft.faults};
-    std::size_t source = 0;
-    reader.choice("format", Need::optional, kSources, source);
-    draft.can_source = static_cast<CanSource>(source);
-    draft.machine.can.format = format_of(kSources[source]);
+    read_source(reader, draft);
     read_period(reader, draft);
     read_signals(reader, draft);
     read_look_ahead(reader, draft);

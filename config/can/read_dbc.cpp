@@ -367,7 +367,7 @@ void DbcReader::read() {
 }  // namespace
 
 void read_dbc(MapReader& can, MachineDraft& draft) {
-    if (draft.can_source != CanSource::dbc) {
+    if (draft.can_source != "dbc") {
         for (const char* key : kDbcKeys) {
             if (can.has(key)) {
                 can.report(key, std::string{key} + " without format: dbc",

@@ -389,7 +389,7 @@ void check_drive_ids(MapReader& can, const Machine& machine) {
 }  // namespace
 
 void read_drives(MapReader& can, MachineDraft& draft) {
-    if (draft.can_source != CanSource::cia402) {
+    if (draft.can_source != "cia402") {
         for (const char* key : {"drives", "sync", "sync_counter", "sync_window_us"}) {
             if (can.has(key)) {
                 can.report(key, std::string{key} + " without format: cia402",

@@ -141,7 +141,7 @@ void read_frame_bytes(MapReader& can, CanLayout& layout) {
 }  // namespace
 
 void read_signals(MapReader& can, MachineDraft& draft) {
-    if (draft.can_source != CanSource::signals) {
+    if (draft.can_source != "signals") {
         for (const char* key : {"signals", "signal_frame_bytes"}) {
             if (can.has(key)) {
                 can.report(key, std::string{key} + " without format: signals",

@@ -14,9 +14,6 @@ namespace axg {
 
 class FaultList;
 
-/// Frame formats of the machine file; CanFormat is how the receiver reads them.
-enum class CanSource : std::uint8_t { classical, fd, signals, dbc, cia402 };
-
 /// Beyond the margin of a pair.
 struct ClearanceLevelDistances {
     double slow_mm = 0, warn_mm = 0;
@@ -26,7 +23,7 @@ struct MachineDraft {
     Machine machine;
     FaultList& faults;
     const NamedFiles& files;
-    CanSource can_source = CanSource::classical;
+    std::string_view can_source = "classical";  // can.format: a name of WireFormat, or dbc
     bool states_permit_samples = false;  // else they follow from `permit`, `ahead` and guard.cap
     std::vector<int> axis_lines{}, body_lines{}, tool_lines{};
     ClearanceLevelDistances usual_clearance_levels{};  // of pairs that state none

@@ -2,8 +2,7 @@
 // What a guard may conclude from axis frames of each format: one row a format. Other rooms read a
 // column; only two programs choose a format by its name (trace_period.cpp, simulate_command.cpp).
 // A new format is a row here, at the end since hashes have its number, a codec in
-// firmware_if/protocol (axis_frames.cpp, axis_layout.cpp), its name in config/can/read_can.cpp and
-// in the schema, and its places in hil_replay/check/check_frames.cpp. Claim: rows stand in the
+// firmware_if/protocol/axis_frames.cpp, and its name in the schema. Claim: rows stand in the
 // order of CanFormat (static_assert), and the columns agree with the frames
 // (tests/unit/firmware_if/protocol/wire_format_test.cpp).
 #pragma once

@@ -214,7 +214,12 @@ std::uint32_t fill_look_ahead(const AxisFrameSet& set, const AxisSnapshot& snaps
 // In the order of kWireFormats.
 constexpr std::array<AxisCodec, kWireFormats.size()> kCodecs{{
     {.decode = decode_classical, .fill = fill_classical, .counter_modulus = 16},
-    {.decode = decode_fd, .fill = fill_fd, .counter_modulus = 256, .is_flexible = true},
+    {.decode = decode_fd,
+     .fill = fill_fd,
+     .counter_modulus = 256,
+     .is_flexible = true,
+     .bytes = 12,
+     .bytes_an_axis = 4},
     {.decode = decode_signals, .fill = fill_signals},
     {.decode = decode_signals, .fill = fill_signals},
 }};

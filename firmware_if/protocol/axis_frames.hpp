@@ -98,8 +98,10 @@ struct AxisCodec {
     std::uint32_t (*fill)(const AxisFrameSet& set, const AxisSnapshot& snapshot,
                           const AxisSnapshot& last, std::uint32_t counter,
                           std::span<CanFrame> out) noexcept;
-    std::uint16_t counter_modulus = 0;  // of own frames
-    bool is_flexible = false;           // own frames are CAN FD
+    // Of own frames. CAN FD pads them to its next length.
+    std::uint16_t counter_modulus = 0;
+    bool is_flexible = false;
+    std::uint8_t bytes = 8, bytes_an_axis = 0;
 };
 [[nodiscard]] const AxisCodec& axis_codec(const WireFormat& wire) noexcept;
 

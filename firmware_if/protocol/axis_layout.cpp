@@ -153,7 +153,8 @@ AxisFrameSet make_frame_set(const Machine& machine) noexcept {
     }
     set.frame_count = own_axis_frames(*set.wire, set.axis_count);
     for (std::uint32_t i = 0; i < set.frame_count; ++i) {
-        set.frame_bytes[i] = set.codec->is_flexible ? fd_length(12 + 4 * set.axis_count) : 8;
+        set.frame_bytes[i] =
+            fd_length(set.codec->bytes + set.codec->bytes_an_axis * set.axis_count);
         set.is_flexible[i] = set.codec->is_flexible;
         set.counter_modulus[i] = set.codec->counter_modulus;
         set.ids[i] = can.axis_ids[i];
