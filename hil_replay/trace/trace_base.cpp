@@ -20,8 +20,11 @@
 #include "hil_replay/trace/vector_asc.hpp"
 
 namespace axg {
+namespace {
 
-std::string quoted(std::string_view text) {
+/// Text from a file, for a message: at most 40 bytes, control characters and bytes beyond ASCII as
+/// \xNN.
+std::string quoted_bytes(std::string_view text) {
     constexpr std::size_t kShown = 40;
     constexpr char kHex[] = "0123456789ABCDEF";
     std::string out = "\"";
@@ -36,6 +39,8 @@ std::string quoted(std::string_view text) {
     }
     return out + (text.size() > kShown ? "...\"" : "\"");
 }
+
+}  // namespace
 
 bool TextTrace::next(CanFrame& frame) {
     if (!error_.empty()) {
@@ -88,7 +93,7 @@ bool TextTrace::complain(const LineFault& fault) {
     if (fault.is_skippable && !options_.lenient) {
         wanted += "; pass over such lines with --lenient";
     }
-    message.append(fault_text("invalid value", quoted(fault.got), wanted));
+    message.append(fault_text("invalid value", quoted_bytes(fault.got), wanted));
     (options_.lenient ? first_skipped_ : error_) = std::move(message);
     return true;
 }
@@ -279,7 +284,7 @@ std::unique_ptr<TraceReader> open_trace(const std::string& path, const TraceOpti
         }
         if (kind == '?') {
             error = path + ":" + std::to_string(lines.line_number()) + ": " +
-                    fault_text("invalid file", quoted(line),
+                    fault_text("invalid file", quoted_bytes(line),
                                is_without_time(line)
                                    ? "a time before each frame; record with candump -L or -ta"
                                    : "a candump log or a Vector ASC file; convert other formats "

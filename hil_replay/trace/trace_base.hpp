@@ -20,10 +20,6 @@ struct LineFault {
     [[nodiscard]] explicit operator bool() const noexcept { return !what.empty(); }
 };
 
-/// Text from a file, for a message: at most 40 bytes, control characters and bytes beyond ASCII as
-/// \xNN.
-[[nodiscard]] std::string quoted(std::string_view text);
-
 /// Payload lengths that a flexible frame can have.
 [[nodiscard]] constexpr bool is_fd_length(std::size_t bytes) noexcept {
     return bytes <= 8 || bytes == 12 || bytes == 16 || bytes == 20 || bytes == 24 || bytes == 32 ||
