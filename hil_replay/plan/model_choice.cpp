@@ -17,6 +17,8 @@
 namespace axg {
 namespace {
 
+constexpr double kSavedTimeShare = 0.95;  // passes of one model differ by less
+
 std::size_t contact_lost_of(const Machine& machine, const std::vector<PairVerdict>& whole,
                             const std::vector<PairVerdict>& coarse, std::vector<LostResult>& out) {
     std::size_t lost = 0;
@@ -137,11 +139,13 @@ bool confirm(const LoadedMachine& whole, const ModelScene& scene, bool on_gpu, M
     }
 }
 
-/// The coarsest model that loses nothing; if it does not fit, the next coarser one that does.
+/// The coarsest model that loses nothing; if it does not fit, the next coarser one that saves
+/// something and does.
 bool choose_and_confirm(const LoadedMachine& whole, const ModelScene& scene, bool on_gpu,
                         ModelChoice& out, std::string& fault) {
     const std::size_t lossless = choose_model(out.models);
-    for (out.chosen = lossless; out.chosen < out.models.size(); ++out.chosen) {
+    for (out.chosen = lossless; out.chosen < out.models.size();
+         out.chosen = next_coarser(out.models, out.chosen)) {
         if (!confirm(whole, scene, on_gpu, out, fault)) {
             return false;
         }
@@ -154,6 +158,10 @@ bool choose_and_confirm(const LoadedMachine& whole, const ModelScene& scene, boo
 }
 
 }  // namespace
+
+double p99_us(const ModelMeasurement& m) noexcept {
+    return std::max({m.contact.p99_us, m.rest.p99_us, m.trace.p99_us});
+}
 
 double slowest_us(const ModelMeasurement& m) noexcept {
     return std::max({m.contact.max_us, m.rest.max_us, m.trace.max_us, m.longest_us});
@@ -192,14 +200,31 @@ bool simplified_to(double simplify_mm, LoadedMachine& loaded, std::string& fault
     return faults.empty();
 }
 
+bool saves(const ModelCandidate& coarser, const ModelCandidate& finer) noexcept {
+    const ModelMeasurement &a = coarser.measured, &b = finer.measured;
+    return a.memory_bytes < b.memory_bytes || p99_us(a) < kSavedTimeShare * p99_us(b) ||
+           a.longest_us < kSavedTimeShare * b.longest_us;
+}
+
 std::size_t choose_model(const std::vector<ModelCandidate>& models) noexcept {
     std::size_t chosen = 0;
     for (std::size_t i = 1; i < models.size(); ++i) {
         const bool is_worth_it = static_cast<double>(models[i].triangles) <=
-                                 kWorthShare * static_cast<double>(models[chosen].triangles);
+                                     kWorthShare * static_cast<double>(models[chosen].triangles) &&
+                                 saves(models[i], models[chosen]) &&
+                                 saves(models[i], models.front());
         chosen = models[i].lost() == 0 && is_worth_it ? i : chosen;
     }
     return chosen;
+}
+
+std::size_t next_coarser(const std::vector<ModelCandidate>& models, std::size_t chosen) noexcept {
+    std::size_t next = chosen + 1;
+    while (next < models.size() &&
+           !(saves(models[next], models[chosen]) && saves(models[next], models.front()))) {
+        ++next;
+    }
+    return next;
 }
 
 Capacities capacities_for(const ModelWork& work, const Capacities& now) noexcept {

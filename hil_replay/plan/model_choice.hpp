@@ -52,6 +52,9 @@ struct ModelChoice {
     ModelCandidate confirmed;   // it with these capacities and queries
 };
 
+/// The time that 99 of 100 cycles keep to, us.
+[[nodiscard]] double p99_us(const ModelMeasurement& measured) noexcept;
+
 /// The slowest cycle that was seen, or constructed, us.
 [[nodiscard]] double slowest_us(const ModelMeasurement& measured) noexcept;
 
@@ -69,11 +72,21 @@ struct ModelChoice {
 /// Whether the slowest cycle of the confirmed model is within room_us().
 [[nodiscard]] bool does_fit(const ModelChoice& choice, const Machine& machine) noexcept;
 
+/// Whether a coarser model takes clearly less time, or less memory: its inflation is not for
+/// nothing. Time is what most cycles take: one slow sample, with either model, decides nothing.
+[[nodiscard]] bool saves(const ModelCandidate& coarser, const ModelCandidate& finer) noexcept;
+
 /// A coarser model is worth its inflation where it has at most so many of the triangles.
 inline constexpr double kWorthShare = 0.7;
 
-/// Index of the coarsest model that has lost nothing and is worth it; 0 if there is none.
+/// Index of the coarsest model that has lost nothing and is worth it: it also saves something
+/// against the whole surfaces and the model that it replaces. 0 if there is none.
 [[nodiscard]] std::size_t choose_model(const std::vector<ModelCandidate>& models) noexcept;
+
+/// Index of the next coarser model that saves against `chosen` and the whole surfaces; the count
+/// of models if there is none.
+[[nodiscard]] std::size_t next_coarser(const std::vector<ModelCandidate>& models,
+                                       std::size_t chosen) noexcept;
 
 /// Twice the measured work, at least an engine's smallest lists, as powers of two; `now` if a list
 /// was full. The capacities of a launch on a GPU do not change.

@@ -25,10 +25,6 @@ std::string title_of(const ModelCandidate& model) {
     return model.simplify_mm == 0 ? "whole" : fmt::format("{:g} mm", model.simplify_mm);
 }
 
-double p99_us(const ModelMeasurement& m) {
-    return std::max({m.contact.p99_us, m.rest.p99_us, m.trace.p99_us});
-}
-
 std::string yaml_of(const Capacities& c) {
     return fmt::format("capacities: {{node_pairs: {}, triangle_pairs: {}, rechecks: {}}}",
                        c.node_pairs, c.triangle_pairs, c.rechecks);
@@ -97,13 +93,14 @@ void print_summary(CheckReport& report, const ModelChoice& choice) {
         report.warnings.push_back("plan: " + fits);
     }
     fmt::print(report.words, "  {}\n", fits);
-    if (choice.chosen + 1 < choice.models.size()) {
+    const std::size_t coarser = next_coarser(choice.models, choice.chosen);
+    if (coarser < choice.models.size()) {
         fmt::print(report.words, "  more speed: {}\n",
-                   format_difference(chosen, choice.models[choice.chosen + 1]));
+                   format_difference(chosen, choice.models[coarser]));
     } else {
         fmt::print(report.words,
-                   "  more speed: no coarser model was found; state fewer cycle.queries, or a "
-                   "larger horizon\n");
+                   "  more speed: no coarser model saves time or memory; state fewer "
+                   "cycle.queries, or a larger horizon\n");
     }
     if (choice.chosen != 0) {
         fmt::print(report.words, "  more accuracy: {}\n",

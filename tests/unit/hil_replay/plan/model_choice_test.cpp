@@ -20,6 +20,18 @@ ModelCandidate model_of(std::size_t triangles, std::size_t contact_lost, std::si
     model.contact_lost = contact_lost;
     model.rest_lost = rest_lost;
     model.trace_lost = trace_lost;
+    model.measured.rest = {1000, 5, static_cast<double>(triangles), 400};
+    model.measured.memory_bytes = 1000;
+    return model;
+}
+
+/// A model that lost nothing, with its times and memory.
+ModelCandidate timed_model(std::size_t triangles, double p99_us, double slowest_us,
+                           std::size_t memory_bytes) {
+    ModelCandidate model = model_of(triangles, 0, 0, 0);
+    model.measured.rest = {1000, 5, p99_us, slowest_us};
+    model.measured.memory_bytes = memory_bytes;
+    model.earlier_mm_max = model.triangles == 1000 ? 0 : 0.5;
     return model;
 }
 
@@ -38,6 +50,38 @@ TEST(ChooseModel, NoInflationForNothing) {
     // Measured against what is chosen so far, not against the model before.
     EXPECT_EQ(choose_model({whole, model_of(500, 0, 0, 0), model_of(451, 0, 0, 0)}), 1U);
     EXPECT_EQ(choose_model({whole, model_of(750, 0, 0, 0), model_of(690, 0, 0, 0)}), 2U);
+}
+
+/// Fewer triangles may bend back: a larger inflation opens more of them. One sample that was slow
+/// with the whole surfaces is no reason for a model that costs time, memory and millimetres.
+TEST(ChooseModel, NoneThatCostsMoreOfEverything) {
+    const ModelCandidate whole = timed_model(1000, 100, 500, 1000);
+    const ModelCandidate dearer = timed_model(500, 120, 300, 1200);
+    const ModelCandidate as_fast = timed_model(500, 96, 300, 1000);
+    const ModelCandidate faster = timed_model(200, 94, 300, 1200);
+    const ModelCandidate smaller = timed_model(500, 120, 500, 999);
+    EXPECT_EQ(choose_model({whole, dearer}), 0U);
+    EXPECT_EQ(choose_model({whole, as_fast}), 0U);
+    EXPECT_EQ(choose_model({whole, faster}), 1U);
+    EXPECT_EQ(choose_model({whole, smaller}), 1U);
+    EXPECT_EQ(choose_model({whole, dearer, faster}), 2U);
+    EXPECT_EQ(next_coarser({whole, dearer}, 0), 2U);
+    EXPECT_EQ(next_coarser({whole, dearer, faster}, 0), 2U);
+    EXPECT_EQ(next_coarser({whole, faster}, 1), 2U);
+    // It saves time against the smaller model, and costs more of everything than the whole.
+    const ModelCandidate between = timed_model(200, 110, 300, 1100);
+    EXPECT_EQ(choose_model({whole, smaller, between}), 1U);
+    EXPECT_EQ(next_coarser({whole, smaller, between}, 1), 3U);
+}
+
+/// The constructed longest cycle of a GPU is a time that each model has.
+TEST(ChooseModel, TheLongestCycleCounts) {
+    ModelCandidate whole = timed_model(1000, 100, 500, 1000);
+    ModelCandidate coarse = timed_model(500, 100, 500, 1000);
+    whole.measured.longest_us = coarse.measured.longest_us = 400;
+    EXPECT_FALSE(saves(coarse, whole));
+    coarse.measured.longest_us = 300;
+    EXPECT_TRUE(saves(coarse, whole));
 }
 
 TEST(CapacitiesFor, TwiceTheWorkAndAPowerOfTwo) {
