@@ -8,6 +8,7 @@
 
 #include "firmware_if/axguardd/latency_command.hpp"
 #include "firmware_if/setup/choose_engine.hpp"
+#include "firmware_if/setup/format_plan.hpp"
 
 namespace axg {
 namespace {
@@ -86,7 +87,7 @@ AdmissionLine judge_engine(const AdmissionFigures& figures) {
     const double room_us = figures.times.engine_us;
     const std::string full =
         cycles.worst_case_us > 0 ? fmt::format(", worst case {:.0f} us", cycles.worst_case_us) : "";
-    const std::string plan = cycles.plan.empty() ? "" : fmt::format(" ({})", cycles.plan);
+    const std::string plan = cycles.plan ? fmt::format(" ({})", format_plan(*cycles.plan)) : "";
     AdmissionLine line =
         timed(AdmissionCheck::engine, timely_us(cycles), room_us,
               fmt::format("{0}: longest proven cycle {2:.0f} us{3}{4}, limit {5:.0f} us ({1} "

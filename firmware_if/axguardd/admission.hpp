@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/guard/time_limits.hpp"
+#include "core/machine/cycle_work.hpp"
 #include "firmware_if/system/fitness.hpp"
 
 namespace axg {
@@ -44,9 +45,9 @@ struct CycleFigures {
     // The longest of all. A cycle that is not proven sends no permit, late or not; but the guard
     // treats an engine without a result for as long as a permit lasts as lost.
     double longest_us = 0;
-    std::uint32_t queries_max = 0;  // of a cycle; contact mode: 0
-    double worst_case_us = 0;       // every list full; 0: contact mode
-    std::string plan{};             // with those lists; empty: contact mode
+    std::uint32_t queries_max = 0;    // of a cycle; contact mode: 0
+    double worst_case_us = 0;         // every list full; 0: contact mode
+    std::optional<CyclePlan> plan{};  // with those lists; empty: contact mode
 };
 
 struct MemoryFigures {

@@ -21,7 +21,6 @@
 #include "firmware_if/guard/guard_chain.hpp"
 #include "firmware_if/guard/live_engine.hpp"
 #include "firmware_if/setup/cold_caches.hpp"
-#include "firmware_if/setup/format_plan.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
 #include "firmware_if/setup/longest_gpu_cycle.hpp"
 #include "firmware_if/setup/travel_sample.hpp"
@@ -137,14 +136,14 @@ bool measure_plan(const LoadedMachine& loaded, const LiveEngines& engines, Cycle
         const std::optional<double> host_us = host_share_us(loaded, demand, fault);
         out.worst_case_us = std::max(engines.chosen.longest_us,
                                      engines.chosen.proof_launches_us + host_us.value_or(0));
-        out.plan = format_plan(engines.plan->plan);
+        out.plan = engines.plan->plan;
         return host_us.has_value();
     }
     const std::optional<ChosenPlan> measured =
         engines.plan ? judge_plan(loaded, engines.plan->plan, fault) : std::nullopt;
     if (measured) {
         out.worst_case_us = measured->longest_us;
-        out.plan = format_plan(measured->plan);
+        out.plan = measured->plan;
     }
     return measured.has_value();
 }

@@ -12,6 +12,8 @@
 #include "firmware_if/axguardd/admission_record.hpp"
 #include "firmware_if/axguardd/live_threads.hpp"
 #include "firmware_if/cli/document_json.hpp"
+#include "firmware_if/cli/plan_json.hpp"
+#include "firmware_if/setup/format_plan.hpp"
 
 namespace axg {
 namespace {
@@ -26,6 +28,7 @@ nlohmann::ordered_json describe(const AdmissionFigures& figures) {
                            {"latest_ns", figures.wake_ups->latest_ns}};
     }
     if (figures.cycles) {
+        const std::optional<CyclePlan>& plan = figures.cycles->plan;
         out["cycles"] = {{"engine", figures.cycles->engine},
                          {"count", figures.cycles->count},
                          {"proven_count", figures.cycles->proven_count},
@@ -33,7 +36,7 @@ nlohmann::ordered_json describe(const AdmissionFigures& figures) {
                          {"longest_us", figures.cycles->longest_us},
                          {"queries_max", figures.cycles->queries_max},
                          {"fill_us", figures.cycles->worst_case_us},
-                         {"plan", figures.cycles->plan}};
+                         {"plan", plan ? format_plan(*plan) : ""}};
     }
     if (figures.memory) {
         out["memory"] = {{"reserved_bytes", figures.memory->reserved_bytes},
@@ -71,21 +74,25 @@ std::string describe_admission(const AdmissionVerdict& verdict, const AdmissionF
     for (const AdmissionLine& line : verdict.lines) {
         checks.push_back(describe(line, waived));
     }
-    return text_of(
-        {{"fit", verdict.is_fit()},
-         {"admitted", verdict.is_waived_by(waived)},
-         {"verdict", to_text(verdict)},
-         {"margin", verdict.margin},
-         {"checks", checks},
-         {"figures", describe(figures)},
-         {"machine", subject.machine},
-         {"configuration_sha256", subject.configuration_sha256},
-         {"bus", subject.bus},
-         {"mode", subject.mode},
-         {"version", AXG_VERSION},
-         {"host", system.nodename},
-         {"kernel", fmt::format("{} {} {}", system.release, system.version, system.machine)},
-         {"date", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now))}});
+    nlohmann::ordered_json document{
+        {"fit", verdict.is_fit()},
+        {"admitted", verdict.is_waived_by(waived)},
+        {"verdict", to_text(verdict)},
+        {"margin", verdict.margin},
+        {"checks", checks},
+        {"figures", describe(figures)},
+        {"machine", subject.machine},
+        {"configuration_sha256", subject.configuration_sha256},
+        {"bus", subject.bus},
+        {"mode", subject.mode},
+        {"version", AXG_VERSION},
+        {"host", system.nodename},
+        {"kernel", fmt::format("{} {} {}", system.release, system.version, system.machine)},
+        {"date", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now))}};
+    if (figures.cycles && figures.cycles->plan) {
+        document["plan"] = plan_json(*figures.cycles->plan);  // for read_admitted_plan
+    }
+    return text_of(document);
 }
 
 std::string describe_findings(const std::vector<Finding>& findings) {

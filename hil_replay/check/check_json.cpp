@@ -9,6 +9,7 @@
 #include "core/certificate/stop_certificate.hpp"
 #include "core/machine/can_id.hpp"
 #include "firmware_if/cli/document_json.hpp"
+#include "firmware_if/cli/plan_json.hpp"
 #include "firmware_if/guard/live_refusal.hpp"
 #include "firmware_if/protocol/axis_frames.hpp"
 #include "firmware_if/protocol/obeyed_by.hpp"
@@ -255,6 +256,16 @@ std::string describe_check(const CheckedFile& checked, const CheckReport& report
     if (facts.engine) {
         out["engine"] = describe_engine(*facts.engine, machine.capacities);
         out["contacts"] = describe_contacts(facts.contacts);
+    }
+    if (facts.admitted) {
+        const AdmittedPlan& admitted = facts.admitted->admitted;
+        out["admitted"] = {{"host", admitted.host},
+                           {"date", admitted.date},
+                           {"engine", admitted.engine},
+                           {"fit", admitted.is_fit},
+                           {"longest_us", admitted.longest_us},
+                           {"plan", plan_json(admitted.plan)},
+                           {"has_file_plan", facts.admitted->has_file_plan}};
     }
     if (!facts.plan.empty()) {
         out["plan"] = Json::parse(facts.plan);

@@ -11,6 +11,7 @@
 
 #include "core/machine/machine.hpp"
 #include "core/mesh/mesh_check.hpp"
+#include "firmware_if/cli/admitted_plan_json.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
 #include "firmware_if/setup/unstated_promises.hpp"
 
@@ -38,6 +39,12 @@ struct EngineFacts {
     std::string choice{}, gpu{}, choice_words{};
 };
 
+/// A stored admission: the plan of the guard's computer, beside that of the machine file.
+struct AdmittedFacts {
+    AdmittedPlan admitted{};
+    bool has_file_plan = false;  // no list of the machine file is longer
+};
+
 /// Results of the sections that are not in the machine itself.
 struct CheckFacts {
     std::vector<MeshReport> bodies, tools;  // as LoadedMachine::meshes; no mesh: nothing in it
@@ -49,6 +56,7 @@ struct CheckFacts {
     std::vector<UnstatedPromise> unstated;
     std::optional<EngineFacts> engine;
     std::vector<PairContacts> contacts;
+    std::optional<AdmittedFacts> admitted;
     std::string plan;  // as JSON; empty: not requested
 };
 
@@ -76,6 +84,8 @@ void report_pairs(CheckReport& report);
 void report_guard(CheckReport& report);
 /// Memory, capacities, and which pairs touch at positions spread over the travel.
 void report_engine(CheckReport& report);
+/// Whether the plan of the machine file fits the computer whose admission is stored in `file`.
+void report_admitted(CheckReport& report, const std::string& file);
 /// Lines of the machine file that are still guesses of `axguard init`; warnings only.
 void report_guesses(CheckReport& report, const std::string& file);
 

@@ -32,7 +32,8 @@ struct CheckOptions {
     std::string engine;
     std::uint32_t multiprocessors = 0;
     bool has_plan = false, is_effective = false;
-    std::string report;  // the page's file; empty: none
+    std::string report;   // the page's file; empty: none
+    std::string plan_of;  // a stored admission; empty: none
     ModelChoiceOptions plan;
     JsonOutput json;
 };
@@ -108,6 +109,9 @@ int check(const CheckOptions& options) {
     report_pairs(report);
     report_guard(report);
     report_engine(report);
+    if (!options.plan_of.empty()) {
+        report_admitted(report, options.plan_of);
+    }
     report_guesses(
         report, is_compiled_name(options.machine.file) ? loaded.source.file : options.machine.file);
     if (options.has_plan && report.exit_code == kExitClean) {
@@ -157,6 +161,9 @@ void add_check(CommandLine& line) {
     command.add_output_folder(
         "--out", options->plan.out,
         "with --plan: folder for plan.csv, lost.csv, conditions.csv, plan.svg and plan.png");
+    command.add_input("--plan-of", options->plan_of,
+                      "compare the plan of the machine file with that of this verdict, which "
+                      "axguardd admit or run stored on the guard's computer");
     command.add_flag("--effective", options->is_effective,
                      "print only the effective machine file: every key with its value");
     command.add_output("--report", options->report,

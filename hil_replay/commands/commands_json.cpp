@@ -6,11 +6,11 @@
 #include <string_view>
 
 #include "firmware_if/cli/document_json.hpp"
+#include "firmware_if/cli/plan_json.hpp"
 #include "hil_replay/gcode/gcode_reader.hpp"
 #include "hil_replay/replay/black_box_file.hpp"
 #include "hil_replay/replay/black_box_replay.hpp"
 #include "hil_replay/replay/limits_json.hpp"
-#include "hil_replay/replay/plan_json.hpp"
 #include "hil_replay/replay/replay_csv.hpp"
 #include "hil_replay/replay/stop_cause_json.hpp"
 #include "hil_replay/simulate/trace_simulation.hpp"

@@ -14,6 +14,7 @@
 
 #include "config/machine/effective_text.hpp"
 #include "config/text/quote_text.hpp"
+#include "firmware_if/cli/admitted_plan_json.hpp"
 #include "firmware_if/cli/command_files.hpp"
 #include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
@@ -46,7 +47,7 @@ namespace {
 struct ReplayArguments {
     MachineOptions machine;
     GcodeArguments gcode;  // program: empty unless --program
-    std::string trace, engine, mode = "stoppable", csv, frames_out, report, device, lines;
+    std::string trace, engine, mode = "stoppable", csv, frames_out, report, device, lines, plan_of;
     std::int64_t deadline_us = 0;  // 0: the machine file's
     std::uint32_t multiprocessors = 0;
     double within_mm = 50.0;
@@ -206,10 +207,10 @@ int exit_code_of(const ReplayReport& report, const Outputs& outputs) {
 /// A black box has its own mode, and is judged to its end.
 int replay_dump(const ReplayArguments& arguments, LoadedMachine& loaded) {
     if (!arguments.csv.empty() || !arguments.report.empty() || arguments.keep_going ||
-        !arguments.device.empty()) {
+        !arguments.device.empty() || !arguments.plan_of.empty()) {
         fmt::print(stderr,
-                   "{}: --csv, --report, --keep-going and --device need a trace. Write the frames "
-                   "of the black box with --frames-out FILE and replay that file.\n",
+                   "{}: --csv, --report, --keep-going, --device and --plan-of need a trace. Write "
+                   "the frames of the black box with --frames-out FILE and replay that file.\n",
                    escaped(arguments.trace, 4096));
         return kExitUsage;
     }
@@ -297,10 +298,29 @@ void advise(const ReplayArguments& arguments, const TraceShape& shape, ReplayRep
                        arguments.advice_s});
 }
 
+/// Takes the plan of a stored admission. False, with a message printed: it is none for this
+/// machine.
+bool take_plan(const ReplayArguments& arguments, LoadedMachine& loaded) {
+    if (arguments.plan_of.empty()) {
+        return true;
+    }
+    std::string fault;
+    const auto admitted = read_admitted_plan(arguments.plan_of, loaded, fault);
+    if (!admitted) {
+        fmt::print(stderr, "{}\n", fault);
+        return false;
+    }
+    loaded.machine.plan = admitted->plan;
+    return true;
+}
+
 int replay(const ReplayArguments& arguments, const ReplayObserver& observer) {
     LoadedMachine loaded;
     if (const int code = load(arguments.machine, loaded); code != kExitClean) {
         return code;
+    }
+    if (!take_plan(arguments, loaded)) {
+        return kExitInput;
     }
     if (is_black_box_file(arguments.trace)) {
         return replay_dump(arguments, loaded);
@@ -351,6 +371,7 @@ int replay(const ReplayArguments& arguments, const ReplayObserver& observer) {
                         run_options.deadline_us,
                         arguments.trace,
                         chosen.gpu_name(),
+                        arguments.plan_of,
                         arguments.is_realtime,
                         end,
                         std::move(lines),
@@ -400,6 +421,9 @@ void add_run_options(const Command& command, ReplayArguments& arguments) {
     command.add_flag(
         "--realtime", arguments.is_realtime,
         "withhold the permit of a late cycle, as axguardd does [default: count late cycles]");
+    command.add_input("--plan-of", arguments.plan_of,
+                      "prove with the plan of this verdict, which axguardd admit or run stored on "
+                      "the guard's computer [default: plan of the machine file]");
     command
         .add_option("--arm-at", arguments.arm_at_s,
                     "arm at this time of the trace, s [default: as soon as the guard is ready]")

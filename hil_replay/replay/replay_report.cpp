@@ -272,10 +272,13 @@ void print_tables(const ReplayReport& report, std::FILE* words) {
 /// Prints how much was read, and its faults.
 void print_input(const ReplayReport& report, std::FILE* words) {
     const ReplayRun& run = report.run;
-    fmt::print(words, "{}: {} frames, {} samples, {} lost, mode {}, engine {} {}\n", report.trace,
+    const std::string plan =
+        report.plan_of.empty() ? "the machine file" : escaped(report.plan_of, 4096);
+    fmt::print(words, "{}: {} frames, {} samples, {} lost, mode {}, engine {} {}{}\n", report.trace,
                run.frame_count(), run.cycles().count(), run.input().samples_lost,
                run.is_stoppable() ? "stoppable" : "contact", report.gpu.empty() ? "cpu" : "cuda",
-               report.gpu.empty() ? report.engine.lanes() : report.gpu);
+               report.gpu.empty() ? report.engine.lanes() : report.gpu,
+               run.is_stoppable() ? ", plan of " + plan : "");
     if (report.end.lines_skipped != 0) {
         fmt::print(words, "{} lines skipped, the first: {}\n", report.end.lines_skipped,
                    report.end.first_skipped);

@@ -25,7 +25,8 @@ struct ReplayReport {
     const ReplayRun& run;
     std::int64_t deadline_us;
     const std::string& trace;
-    std::string gpu{};  // which one ran; empty: the CPU engine
+    std::string gpu{};      // which one ran; empty: the CPU engine
+    std::string plan_of{};  // the stored admission that states the plan; empty: the machine file
     bool is_realtime = false;
     TraceEnd end{};
     ProgramLines lines{};  // empty: no table of them

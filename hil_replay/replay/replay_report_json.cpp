@@ -3,10 +3,10 @@
 
 #include "core/base/sincos.hpp"
 #include "firmware_if/cli/document_json.hpp"
+#include "firmware_if/cli/plan_json.hpp"
 #include "firmware_if/protocol/obeyed_by.hpp"
 #include "hil_replay/replay/limits_json.hpp"
 #include "hil_replay/replay/pairs_at_stop.hpp"
-#include "hil_replay/replay/plan_json.hpp"
 #include "hil_replay/replay/replay_csv.hpp"
 #include "hil_replay/replay/replay_report.hpp"
 #include "hil_replay/replay/stop_cause_json.hpp"
@@ -104,6 +104,7 @@ Json proofs_json(const ReplayReport& report) {
         {"queries", counts(proofs.queries, proofs.queries_most)},
         {"stages", counts(proofs.stages, proofs.stages_most)},
         {"plan", plan_json(report.run.plan())},
+        {"plan_of", report.plan_of.empty() ? report.loaded.source.file : report.plan_of},
         {"withheld", proofs.withheld}};
 }
 
