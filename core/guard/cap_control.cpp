@@ -2,6 +2,7 @@
 #include "core/guard/cap_control.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/guard/order_list.hpp"
 
@@ -80,18 +81,39 @@ CapOrder CapControl::update(const CapCycle& cycle) noexcept {
         ask(kCrawlOfAll, false);
         return order_;
     }
-    if (!cycle.wish.is_kept_fine) {
+    unkept_ = cycle.wish.is_kept_fine ? 0 : unkept_ + 1;
+    if (unkept_ >= kCapPatience) {
         fall(cycle);
         return order_;
     }
-    const bool had_room = has_room_;
+    if (unkept_ != 0) {
+        has_room_ = has_asked_ = is_urgent_ = false;
+        return order_;
+    }
+    const bool had_room = has_room_, had_asked = has_asked_;
     has_room_ = !are_same(cycle.wish.best, order_);
     room_since_us_ = had_room ? room_since_us_ : cycle.sample_us;
     has_asked_ = has_room_ && cycle.sample_us - room_since_us_ >= kCapRoomUs;
     if (has_asked_) {
-        ask(cycle.wish.best, false);
+        ask(next_raise(cycle, had_asked), false);
     }
     return order_;
+}
+
+/// The wished order; once it has failed, lower ones, down to the order in force, and then the
+/// wished one again: close to a body rapid is not proven, but a little more is, and each step away
+/// from it more.
+CapOrder CapControl::next_raise(const CapCycle& cycle, bool had_asked) const noexcept {
+    const CapOrder& best = cycle.wish.best;
+    const AxisCaps wished = caps_of_permit(best.cap, best.mask);
+    if (!cycle.is_asked) {  // `asked_` still waits for its turn
+        return had_asked && asked_.cap > order_.cap && is_within(asked_, wished) ? asked_ : best;
+    }
+    const auto middle =
+        static_cast<std::uint8_t>(std::sqrt(static_cast<double>(order_.cap) * asked_.cap));
+    const CapOrder lower{.cap = std::min(best.cap, middle),
+                         .mask = static_cast<std::uint8_t>(order_.mask | best.mask)};
+    return lower.cap > order_.cap ? lower : best;
 }
 
 }  // namespace axg

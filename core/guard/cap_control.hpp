@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Chooses the cap that the next permit orders, and its axes: lowers it at once to the result of a
-// search, and raises it only to a proven one. Pure, from cycle to cycle. No proof depends on it:
-// every permit is sent for a proof with the caps that it orders. Source: docs/reference/board.md,
-// "Which order".
+// Chooses the cap that the next permit orders, and its axes: lowers it to the result of a search
+// that fails for kCapPatience cycles, and raises it, in steps, only to a proven one. Pure, from
+// cycle to cycle. No proof depends on it: every permit is sent for a proof with the caps that it
+// orders. Source: docs/reference/board.md, "Which order".
 #pragma once
 
 #include <cstdint>
@@ -13,6 +13,9 @@ namespace axg {
 
 inline constexpr std::uint8_t kCapCrawl = 1, kCapHold = 0;
 inline constexpr std::uint8_t kMaskOfAll = 0xFF;
+// Cycles in a row in which the search does not prove the order in force before a lower one is
+// ordered. The noise of positions alone makes single searches fail. The lead is about 200 cycles.
+inline constexpr std::uint32_t kCapPatience = 4;
 inline constexpr std::int64_t kCapRoomUs = 100'000, kCapRaiseUs = 10'000, kCapHeldUs = 2'000'000;
 
 struct CapOrder {
@@ -58,10 +61,11 @@ class CapControl {
     void fall(const CapCycle& cycle) noexcept;
     void crawl(const CapCycle& cycle) noexcept;
     void ask(const CapOrder& order, bool is_urgent) noexcept;
+    [[nodiscard]] CapOrder next_raise(const CapCycle& cycle, bool had_asked) const noexcept;
 
     CapOrder order_{}, asked_{};
     bool has_asked_ = false, is_urgent_ = false, has_room_ = false;
-    std::uint32_t unproven_ = 0;  // cycles in a row
+    std::uint32_t unproven_ = 0, unkept_ = 0;  // cycles in a row; and of the search
     std::int64_t room_since_us_ = 0, asked_us_ = INT64_MIN, held_since_us_ = 0;
 };
 

@@ -162,8 +162,9 @@ void put_place(AxisLimits limits, const AxisRange& now, const AxisFuture& future
 
 /// Time from an order to slow down until the board acknowledges it: a planner averages its speed
 /// for as long as the softest axis needs to reverse its acceleration. Longer leads cost more time.
+/// An order waits for kCapPatience cycles.
 double order_lead_seconds(const Machine& machine) noexcept {
-    return kOrderLead * cap_lead_seconds(machine);
+    return kOrderLead * cap_lead_seconds(machine) + kCapPatience * machine.can.sample_us * 1e-6;
 }
 
 JointBox ordered_box(const Machine& machine, const AxisRanges& ranges,

@@ -70,6 +70,12 @@ struct GuardBench {
         return {};
     }
 
+    /// As many as a fall of the cap needs; the last result.
+    CycleResult slow_down() {
+        (void)steps(kCapPatience - 1, facts_at(kCapRapid), 0, kSlower);
+        return step(facts_at(kCapRapid), 0, kSlower);
+    }
+
     Machine machine;
     CapGuard guard;
     AxisSnapshot snapshot;
@@ -104,7 +110,7 @@ TEST(CapGuard, OrdersLessWhereThatIsWishedFor) {
     CycleResult result = bench.step(facts_at(kCapRapid), 0);
     EXPECT_TRUE(result.has_cap);
     EXPECT_EQ(result.cap_order.cap, kCapRapid);
-    result = bench.step(facts_at(kCapRapid), 0, kSlower);
+    result = bench.slow_down();
     EXPECT_TRUE(result.has_permit);
     EXPECT_EQ(result.cap_order.cap, 187);
     EXPECT_EQ(result.cap_order.mask, 0xFF);
@@ -114,7 +120,7 @@ TEST(CapGuard, OrdersLessWhereThatIsWishedFor) {
 
 TEST(CapGuard, AResultOfACapThatIsNoLongerOrderedHasNoPermit) {
     GuardBench bench;
-    bench.step(facts_at(kCapRapid), 0, kSlower);
+    bench.slow_down();
     EXPECT_FALSE(bench.step(facts_at(kCapRapid), 0, {}, false).has_permit);
     EXPECT_TRUE(bench.step(facts_at(kCapRapid), 0, {}, false).has_permit);
 }
@@ -145,7 +151,7 @@ TEST(CapGuard, AnAxisThatIsFasterThanItsCapIsSeen) {
 
 TEST(CapGuard, AnOrderThatIsNotAcknowledgedInTimeStops) {
     GuardBench bench;
-    bench.step(facts_at(kCapRapid), 0, kSlower);
+    bench.slow_down();
     const int most = static_cast<int>(cap_answer_seconds(bench.machine) * 1e3);
     for (const bool in_time : {true, false}) {
         const auto stop = bench.steps(in_time ? most - 1 : 3, facts_at(kCapRapid), 0, kSlower);
