@@ -110,8 +110,21 @@ constexpr double kOverIni = 2;
 constexpr const char* kOverIniHead =
     R"(# LinuxCNC exceeds the limits of its INI file where moves blend, so acceleration_... is twice
 # MAX_ACCELERATION; with kinematics for the tip, speed_... is also twice MAX_VELOCITY. If a drive
-# cannot do that, halve the values of the INI file instead.
+# cannot do that, halve the values of the INI file instead. stopping_... is MAX_ACCELERATION, by
+# which LinuxCNC brakes: state less if a drive with the heaviest workpiece does not keep it.
 )";
+
+/// The guessed deceleration of a stop, with its price: so much longer is the stop from full speed
+/// if only half of it is true. LinuxCNC brakes each joint by its MAX_ACCELERATION.
+std::string stopping_guess(const IniAxis& axis, double speed, double stopping) {
+    const double half_costs = 0.5 * speed * speed / stopping;
+    return axis.acceleration
+               ? fmt::format(
+                     "stopping as the control brakes (half of it: {:.3g} {} more from full "
+                     "speed)",
+                     half_costs, axis.is_rotary ? "deg" : "mm")
+               : "stopping";
+}
 
 /// Travel, speed and acceleration from the control's INI file. The file states no stop, only full
 /// acceleration; without MAX_JERK, LinuxCNC limits no jerk.
@@ -121,7 +134,9 @@ std::string known_axis_text(const IniAxis& axis) {
     const double acceleration = full * (axis.acceleration ? kOverIni : 1);
     const double speed = axis.speed.value_or(axis.is_rotary ? 90 : 10000.0 / 60) *
                          (axis.speed && axis.follows_tip ? kOverIni : 1);
-    std::string guesses = "stopping, position_error, following_error";
+    const double stopping = axis.acceleration.value_or(0.8 * full);
+    std::string guesses =
+        stopping_guess(axis, speed, stopping) + ", position_error, following_error";
     std::string travel = "unlimited";
     if (!axis.is_unlimited) {
         const double far = axis.is_rotary ? 90 : 200;
@@ -138,7 +153,7 @@ std::string known_axis_text(const IniAxis& axis) {
         "jerk_{}_s3: {}, stopping_{}_s2: {:.9g}, {}}}  {}: {}\n",
         axis.letter, axis.is_rotary ? "rotary" : "linear", unit, travel,
         axis.is_rotary ? "deg_s" : "mm_min", speed * (axis.is_rotary ? 1 : 60), unit, acceleration,
-        unit, jerk, unit, 0.8 * full, errors_text(axis.is_rotary), kGuessMark, guesses);
+        unit, jerk, unit, stopping, errors_text(axis.is_rotary), kGuessMark, guesses);
 }
 
 /// An axis of the file, with its place on the bus.

@@ -129,15 +129,17 @@ TEST_F(Commands, InitTakesTheAxesOfAnIniFile) {
     EXPECT_DOUBLE_EQ(machine.axes[0].min, -317.5);
     EXPECT_DOUBLE_EQ(machine.axes[0].max, 304.8);
     EXPECT_DOUBLE_EQ(machine.axes[0].speed_max, 254);
-    // LinuxCNC exceeds it in blends: twice that is declared, and braking is no more than it.
+    // LinuxCNC exceeds it in blends: twice that is declared. It brakes by MAX_ACCELERATION.
     EXPECT_DOUBLE_EQ(machine.axes[0].acceleration_max, 2 * 508);
-    EXPECT_DOUBLE_EQ(machine.axes[0].stopping_min, 0.8 * 508);
+    EXPECT_DOUBLE_EQ(machine.axes[0].stopping_min, 508);
     EXPECT_NEAR(machine.axes[3].max, 95 * kPi / 180, 1e-12);
     EXPECT_NEAR(machine.axes[3].speed_max, 2 * kPi, 1e-12);
     EXPECT_TRUE(machine.axes[4].unlimited);
     const std::string text = read(path("m.yaml"));
     EXPECT_TRUE(has(text, "so acceleration_... is twice\n# MAX_ACCELERATION")) << text;
-    EXPECT_TRUE(has(text, "# GUESS: stopping, position_error, following_error\n"))
+    EXPECT_TRUE(has(text,
+                    "# GUESS: stopping as the control brakes (half of it: 63.5 mm more from full "
+                    "speed), position_error, following_error\n"))
         << "X: the INI file says the rest\n"
         << text;
     EXPECT_TRUE(has(
