@@ -29,6 +29,11 @@ std::string cause_sentence(const WhyFacts& facts) {
     return pair + " could not be proven clear";
 }
 
+/// Whether the clearance suffices for a stop, so that only the work of a cycle was short.
+bool has_clearance(const WhyFacts& facts) noexcept {
+    return facts.available_mm > 0 && facts.available_mm >= facts.needed_mm;
+}
+
 /// In the words of the status: verdict: predicted: cutter - c.
 std::string stop_sentence(const StopAccount& account) {
     std::string out = fmt::format("stopped: {}", to_text(account.cause));
@@ -76,6 +81,11 @@ std::vector<std::string> why_sentences(const WhyFacts& facts) {
         facts.available_mm <= 0
             ? "no distance between them is proven"
             : fmt::format("they are at least {:.4f} mm apart", facts.available_mm);
+    if (facts.is_of_stop && has_clearance(facts)) {
+        out.push_back(fmt::format("{}, enough for a stop ({:.4f} mm): the proof ran out of steps",
+                                  available, facts.needed_mm));
+        return out;
+    }
     out.push_back(available +
                   (facts.is_of_stop
                        ? fmt::format(", the proof of a stop needs up to {:.4f} mm", facts.needed_mm)

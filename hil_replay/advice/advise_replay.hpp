@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds settings with which a replayed trace stops nearer. The trace shows those that do not change
-// the motion; the simulated board runs the program, if it is known, with the others.
+// Finds settings with which a replayed trace stops nearer. Only stops about the distance of a pair
+// have some, whatever their cause: reach, halving or full lists. A frozen axis, a late cycle and
+// lost frames come from the board, the computer and the bus: no setting makes them harmless. A
+// broken limit prints the measured value, which would be the true one.
+//
+// The trace shows the settings that do not change the motion; the simulated board runs the program,
+// if it is known, with the others.
 #pragma once
 
 #include <string>

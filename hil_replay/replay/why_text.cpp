@@ -84,8 +84,10 @@ std::string format_parts(const Machine& machine, const StopWhy& why) {
     if (why.cause == WhyCause::not_known) {
         return text + "was not queried: too little is known of the motion to come\n";
     }
-    text += fmt::format("needs {:.4f} mm and {}\n    {}\n", why.need.sum_mm(), available_text(why),
-                        parts_text(why));
+    const bool is_enough = why.available_mm > 0 && why.available_mm >= why.need.sum_mm();
+    text += fmt::format(
+        "needs {:.4f} mm and {}{}\n    {}\n", why.need.sum_mm(), available_text(why),
+        is_enough ? ": the work of a cycle was short, not clearance" : "", parts_text(why));
     if (why.has_reach) {
         text += why.worst_mm > 0
                     ? fmt::format("    worst case found, to standstill: {:.4f} mm\n", why.worst_mm)

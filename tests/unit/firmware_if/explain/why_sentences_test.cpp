@@ -46,6 +46,24 @@ TEST(WhySentences, EachCauseHasItsOwnAndNamesBothBodies) {
     }
 }
 
+/// A full list stops a pair with clearance enough: no sentence calls that clearance too small.
+TEST(WhySentences, ClearanceThatSufficesIsNotTheCause) {
+    WhyFacts facts{.cause = WhyCause::capacity,
+                   .a = "cutter",
+                   .b = "plate",
+                   .available_mm = 10.4689,
+                   .needed_mm = 0.4555};
+    EXPECT_EQ(why_sentences(facts).at(1),
+              "they are at least 10.4689 mm apart, enough for a stop (0.4555 mm): the proof ran "
+              "out of steps");
+    facts.needed_mm = 10.4690;
+    EXPECT_EQ(why_sentences(facts).at(1),
+              "they are at least 10.4689 mm apart, the proof of a stop needs up to 10.4690 mm");
+    facts.needed_mm = facts.available_mm = 0;
+    EXPECT_EQ(why_sentences(facts).at(1),
+              "no distance between them is proven, the proof of a stop needs up to 0.0000 mm");
+}
+
 TEST(WhySentences, OfAPoseTheMarginIsTheNeed) {
     WhyFacts facts = facts_of(WhyCause::margin);
     facts.is_of_stop = false;
