@@ -148,7 +148,11 @@ void add_pairs(Lines& lines, const Machine& machine) {
                   {pair.margin_mm, pair.slow_mm, pair.warn_mm});
     }
     for (const Exclusion& one : machine.exclusions) {
-        lines.add("exclusion." + std::to_string(one.a) + '.' + std::to_string(one.b), one.reason);
+        const std::string key = "exclusion." + std::to_string(one.a) + '.' + std::to_string(one.b);
+        lines.add(key, one.reason);
+        if (!one.because.empty()) {
+            lines.add(key + ".because", one.because);
+        }
     }
 }
 

@@ -304,6 +304,11 @@ void fill_top(YamlNode& top, const Machine& machine) {
     YamlNode& guard = map_at(top, "guard");
     fill_guard(guard, machine.guard);
     fill_pairs(find(top, "pairs")->value, guard);
+    if (YamlEntry* const exclusions = find(top, "exclusions")) {
+        for (YamlEntry& entry : exclusions->value.entries) {
+            fill_none(entry.value, {"because"});
+        }
+    }
     fill_none(top, {"exclusions", "output_line"});
     fill_capacities(map_at(top, "capacities"), machine.capacities);
     fill_cycle(top, machine.cycle);

@@ -137,15 +137,17 @@ void read_pair(const YamlEntry& item, const std::string& path, MachineDraft& dra
 
 void read_exclusion(const YamlEntry& item, const std::string& path, MachineDraft& draft,
                     PairTable& table) {
-    MapReader reader{item.value, path, {"a", "b", "reason"}, draft.faults};
+    MapReader reader{item.value, path, {"a", "b", "reason", "because"}, draft.faults};
     const auto a = read_side(reader, "a", draft);
     const auto b = read_side(reader, "b", draft);
-    std::string reason;
+    std::string reason, because;
     reader.text("reason", Need::required, 512, reason);
+    reader.text("because", Need::optional, 512, because);
     for (const std::uint32_t one : a) {
         for (const std::uint32_t other : b) {
             if (table.take(one, other, item.line, path)) {
-                draft.machine.exclusions.push_back({.a = one, .b = other, .reason = reason});
+                draft.machine.exclusions.push_back(
+                    {.a = one, .b = other, .reason = reason, .because = because});
             }
         }
     }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/certificate/travel.hpp"
 
+#include "core/base/sincos.hpp"
+
 namespace axg {
 
 Travel travel_of(const Machine& machine) {
@@ -13,6 +15,20 @@ Travel travel_of(const Machine& machine) {
         out.high[i] = axis.max + over;
     }
     return out;
+}
+
+JointBox travel_box(const Machine& machine) {
+    const Travel travel = travel_of(machine);
+    JointBox box;
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+        if (machine.axes[i].unlimited) {
+            box.half[i] = kPi * (1 + 0x1p-40);
+            continue;
+        }
+        box.centre[i] = 0.5 * (travel.low[i] + travel.high[i]);
+        box.half[i] = 0.5 * (travel.high[i] - travel.low[i]) * (1 + 0x1p-40) + 0x1p-30;
+    }
+    return box;
 }
 
 bool is_in_travel(const Machine& machine, const JointPath& path, const JointBox& box) noexcept {

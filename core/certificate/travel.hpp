@@ -14,6 +14,9 @@ namespace axg {
 /// The positions for which a machine's proofs hold: its travel plus the overrun of its rules.
 [[nodiscard]] Travel travel_of(const Machine& machine);
 
+/// All of these; wider than what is_in_travel() lets in, by more than its sums are rounded.
+[[nodiscard]] JointBox travel_box(const Machine& machine);
+
 /// Whether the travel contains the box, on the axes of `path`. False without proofs.
 [[nodiscard]] bool is_in_travel(const Machine& machine, const JointPath& path,
                                 const JointBox& box) noexcept;

@@ -141,6 +141,8 @@ struct Travel {
 struct Exclusion {
     std::uint32_t a = 0, b = 0;
     std::string reason;
+    // Why it may hide a contact that is not permanent; empty: it hides none, by its author.
+    std::string because;
 };
 
 /// Capacities of all queries in one launch of a GPU together: they bound the longest launch. Time

@@ -7,7 +7,6 @@
 #include <span>
 #include <utility>
 
-#include "core/base/sincos.hpp"
 #include "core/certificate/stop_certificate.hpp"
 #include "core/certificate/travel.hpp"
 #include "core/collision/tree.hpp"
@@ -29,21 +28,6 @@ constexpr std::size_t kSmallSurface = std::size_t{kNodeWidth} * kNodeWidth;
 struct Cluster {
     std::size_t first, count;
 };
-
-/// The whole travel; wider than what is_in_travel() lets in, by more than its sums are rounded.
-JointBox travel_box(const Machine& machine) {
-    const Travel travel = travel_of(machine);
-    JointBox box;
-    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-        if (machine.axes[i].unlimited) {
-            box.half[i] = kPi * (1 + 0x1p-40);
-            continue;
-        }
-        box.centre[i] = 0.5 * (travel.low[i] + travel.high[i]);
-        box.half[i] = 0.5 * (travel.high[i] - travel.low[i]) * (1 + 0x1p-40) + 0x1p-30;
-    }
-    return box;
-}
 
 bool is_far(CpuEngine& engine, const Query& query) {
     QueryResult result;

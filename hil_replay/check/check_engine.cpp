@@ -81,14 +81,12 @@ std::string nesting_of(const Machine& machine, const Pair& pair, const Sampled& 
            escaped(machine.bodies[a_in_b ? pair.b : pair.a].name);
 }
 
-void print_sampled(const CheckReport& report, const Pair& pair, const Sampled& sampled,
-                   bool is_checked) {
+void print_sampled(const CheckReport& report, const Pair& pair, const Sampled& sampled) {
     const Machine& machine = report.loaded.machine;
     const auto line = [&](std::uint32_t poses, const std::string& what) {
         if (poses != 0) {
-            fmt::print(report.words, "  {:<24} {:>3} of {}{}{}{}\n", name_of(machine, pair), poses,
-                       kPoses, what, is_checked ? "" : "  not checked",
-                       poses == kPoses ? "  permanent" : "");
+            fmt::print(report.words, "  {:<24} {:>3} of {}{}{}\n", name_of(machine, pair), poses,
+                       kPoses, what, poses == kPoses ? "  permanent" : "");
         }
     };
     line(sampled.touching, "");
@@ -119,26 +117,20 @@ void report_contacts(CheckReport& report, CpuEngine& engine,
     for (Pair& pair : pairs) {
         pair.margin_mm = 0;
     }
-    for (const Exclusion& exclusion : machine.exclusions) {
-        pairs.push_back({.a = exclusion.a, .b = exclusion.b, .margin_mm = 0});
-    }
     const std::vector<Sampled> sampled = sample_pairs(machine, pairs, engine, containment_test);
     fmt::print(report.words,
-               "\npairs in contact, or one body inside the other, at {} positions of the travel "
+               "\npairs checked that are in contact, or one body inside the other, at {} positions "
+               "of the travel "
                "(the zero pose first)\n",
                kPoses);
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-        const bool is_checked = i < machine.pairs.size();
         report.facts.contacts.push_back({.name = name_of(machine, pairs[i]),
-                                         .is_checked = is_checked,
                                          .positions = kPoses,
                                          .touching = sampled[i].touching,
                                          .contained = sampled[i].contained,
                                          .not_known = sampled[i].not_known});
-        print_sampled(report, pairs[i], sampled[i], is_checked);
-        if (is_checked) {
-            warn_of(report, pairs[i], sampled[i]);
-        }
+        print_sampled(report, pairs[i], sampled[i]);
+        warn_of(report, pairs[i], sampled[i]);
     }
 }
 
@@ -188,6 +180,7 @@ void report_engine(CheckReport& report) {
                capacities.rechecks);
     report_choice(report, *engine);
     report_contacts(report, *engine, *containment_test);
+    report_exclusions(report);
 }
 
 }  // namespace axg

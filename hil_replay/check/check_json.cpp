@@ -10,6 +10,7 @@
 #include "core/machine/can_id.hpp"
 #include "firmware_if/cli/document_json.hpp"
 #include "firmware_if/cli/plan_json.hpp"
+#include "firmware_if/cli/limit_text.hpp"
 #include "firmware_if/guard/live_refusal.hpp"
 #include "firmware_if/protocol/axis_frames.hpp"
 #include "firmware_if/protocol/obeyed_by.hpp"
@@ -141,12 +142,39 @@ Json describe_pairs(const Machine& machine) {
     return out;
 }
 
-Json describe_exclusions(const Machine& machine) {
+/// The axes between the bodies, by name.
+Json describe_place(const Machine& machine, const Exclusion& one, const TravelWitness& at) {
+    Json out = Json::object();
+    for (const std::uint32_t axis : axes_between(machine, one)) {
+        out[machine.axes[axis].name] = in_axis_units(machine.axes[axis], at.position[axis]);
+    }
+    if (at.tool != kNoIndex) {
+        out["tool"] = machine.tools[at.tool].number;
+    }
+    return out;
+}
+
+Json describe_exclusions(const Machine& machine, const std::vector<PairOverTravel>& found) {
     Json out = Json::array();
-    for (const Exclusion& one : machine.exclusions) {
-        out.push_back({{"a", machine.bodies[one.a].name},
-                       {"b", machine.bodies[one.b].name},
-                       {"reason", one.reason}});
+    for (std::size_t i = 0; i < machine.exclusions.size(); ++i) {
+        const Exclusion& one = machine.exclusions[i];
+        Json& item = out.emplace_back(Json{{"a", machine.bodies[one.a].name},
+                                           {"b", machine.bodies[one.b].name},
+                                           {"reason", one.reason}});
+        if (!one.because.empty()) {
+            item["because"] = one.because;
+        }
+        if (i >= found.size()) {
+            continue;
+        }
+        item["over_travel"] = to_text(found[i].verdict);
+        item["queries"] = found[i].queries;
+        if (found[i].verdict == TravelVerdict::never_near) {
+            item["never_nearer_mm"] = found[i].apart_mm;
+        } else if (found[i].verdict == TravelVerdict::both) {
+            item["meets_at"] = describe_place(machine, one, found[i].near);
+            item["apart_at"] = describe_place(machine, one, found[i].apart);
+        }
     }
     return out;
 }
@@ -217,7 +245,7 @@ Json describe_contacts(const std::vector<PairContacts>& contacts) {
     Json out = Json::array();
     for (const PairContacts& pair : contacts) {
         out.push_back({{"pair", pair.name},
-                       {"checked", pair.is_checked},
+                       {"checked", true},
                        {"positions", pair.positions},
                        {"in_contact", pair.touching},
                        {"contained", pair.contained},
@@ -251,7 +279,7 @@ std::string describe_check(const CheckedFile& checked, const CheckReport& report
     out["tools"] = describe_tools(machine, facts);
     out["first_tool"] = machine.first_tool;
     out["pairs"] = describe_pairs(machine);
-    out["exclusions"] = describe_exclusions(machine);
+    out["exclusions"] = describe_exclusions(machine, facts.exclusions);
     out["guard"] = describe_guard(machine, facts);
     if (facts.engine) {
         out["engine"] = describe_engine(*facts.engine, machine.capacities);

@@ -12,6 +12,7 @@
 #include "core/machine/machine.hpp"
 #include "core/mesh/mesh_check.hpp"
 #include "firmware_if/cli/admitted_plan_json.hpp"
+#include "firmware_if/setup/exclusion_proof.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
 #include "firmware_if/setup/unstated_promises.hpp"
 
@@ -22,10 +23,9 @@ struct AxisReach {
     double at_full_speed = 0, at_rest = 0;
 };
 
-/// A pair at positions spread over the travel, margin 0.
+/// A checked pair at positions spread over the travel, margin 0.
 struct PairContacts {
     std::string name;
-    bool is_checked = false;
     std::uint32_t positions = 0;
     std::uint32_t touching = 0;   // positions at which the surfaces are not proven apart
     std::uint32_t contained = 0;  // those at which they are, and one body is inside the other
@@ -57,7 +57,8 @@ struct CheckFacts {
     std::optional<EngineFacts> engine;
     std::vector<PairContacts> contacts;
     std::optional<AdmittedFacts> admitted;
-    std::string plan;  // as JSON; empty: not requested
+    std::vector<PairOverTravel> exclusions;  // as Machine::exclusions; empty: no engine
+    std::string plan;                        // as JSON; empty: not requested
 };
 
 struct CheckReport {
@@ -86,6 +87,12 @@ void report_guard(CheckReport& report);
 void report_engine(CheckReport& report);
 /// Whether the plan of the machine file fits the computer whose admission is stored in `file`.
 void report_admitted(CheckReport& report, const std::string& file);
+/// Prints what each exclusion hides over the travel. A contact that `because` does not explain is a
+/// warning.
+void report_exclusions(CheckReport& report);
+/// Axes that move the two bodies against each other.
+[[nodiscard]] std::vector<std::uint32_t> axes_between(const Machine& machine, const Exclusion& one);
+
 /// Lines of the machine file that are still guesses of `axguard init`; warnings only.
 void report_guesses(CheckReport& report, const std::string& file);
 

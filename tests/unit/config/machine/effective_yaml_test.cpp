@@ -117,5 +117,21 @@ TEST(EffectiveYaml, StatesEveryKeyOfTheSchema) {
     }
 }
 
+// What explains a contact is part of the configuration, and its absence changes no hash.
+TEST(EffectiveYaml, AnExclusionKeepsItsBecause) {
+    const std::string with_because = test::with(test::kSmallMachine, "reason: bearings}",
+                                                "reason: bearings, because: the boss passes}");
+    expect_same(with_because);
+    Machine machine, plain;
+    ASSERT_TRUE(parse_machine(with_because, "m", machine).empty());
+    ASSERT_TRUE(parse_machine(test::kSmallMachine, "m", plain).empty());
+    ASSERT_EQ(machine.exclusions.size(), 6U);
+    EXPECT_EQ(machine.exclusions[3].because, "the boss passes");
+    EXPECT_EQ(machine.exclusions[4].because, "the boss passes") << "each pair of the line";
+    EXPECT_EQ(machine.exclusions[5].because, "");
+    EXPECT_NE(effective_text(machine), effective_text(plain));
+    EXPECT_EQ(effective_text(plain).find("because"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace axg

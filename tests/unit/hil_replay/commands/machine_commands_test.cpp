@@ -227,6 +227,10 @@ TEST_F(Commands, AnEmptyListIsPrinted) {
             text.erase(at, mark.size());
         }
     }
+    for (const char* names : {"{a: saddle, b: table,", "{a: saddle, b: lamp__left_,",
+                              "{a: headstock, b: lamp__left_,"}) {  // these part
+        text = with(text, names, std::string(names) + " because: small,");
+    }
     std::ofstream(path("m.yaml")) << text;
     const Outcome check = axguard({"check", path("m.yaml")});
     EXPECT_EQ(check.exit_code, kExitClean) << check.err;
@@ -512,6 +516,52 @@ TEST_F(Commands, TheHashChangesWithEachValueAndWithNothingElse) {
     }
     write_mesh("table.stl", other);
     EXPECT_NE(hash_of(text), hash);
+}
+
+// A carriage that leaves its rail at the end of the travel: an exclusion that hides a contact is
+// reviewed until the file explains it; one that hides none, or a permanent one, is not.
+TEST_F(Commands, CheckListsAnExclusionThatHidesAContact) {
+    const std::string machine = R"(version: 1
+name: rail
+axes:
+  X: {kind: linear, travel_mm: [-100, 100], speed_mm_min: 6000, acceleration_mm_s2: 1000,
+      jerk_mm_s3: 20000, stopping_mm_s2: 800, position_error_mm: 0.001, following_error_mm: 0}
+bodies:
+  - {name: rail, mesh: {shapes: [{box_mm: [400, 20, 20], at_mm: [0, 0, -20]}]}}
+  - {name: wall, mesh: {shapes: [{box_mm: [10, 20, 20], at_mm: [500, 0, 0]}]}}
+  - {name: carriage, axis: X, direction: [1, 0, 0], mesh: {shapes: [{box_mm: [60, 60, 25]}]}}
+pairs:
+  - {a: wall, b: carriage, margin_mm: 1}
+exclusions:
+  - {a: rail, b: wall, reason: both are fixed}
+  - {a: rail, b: carriage, reason: guides}
+)";
+    const auto check = [&](const std::string& text) {
+        std::ofstream(path("m.yaml")) << text;
+        const Outcome run = axguard({"check", path("m.yaml"), "--json=" + path("m.json")});
+        EXPECT_EQ(run.exit_code, kExitClean) << run.err;
+        return run.out;
+    };
+    std::string out = check(machine);
+    EXPECT_TRUE(has(out, "  rail-wall                never nearer than ")) << out;
+    EXPECT_TRUE(has(out, "  rail-carriage            in contact at every place\n")) << out;
+    EXPECT_FALSE(has(out, "exclusion of")) << out;
+
+    const std::string leaving = with(machine, "box_mm: [400, 20, 20]", "box_mm: [140, 20, 20]");
+    out = check(leaving);
+    EXPECT_TRUE(has(out, "exclusion of rail and carriage: meets at X 0 and is apart at X ")) << out;
+    const auto item = Json::parse(read(path("m.json")))["exclusions"][1];
+    EXPECT_EQ(item["over_travel"], "both");
+    EXPECT_EQ(item["meets_at"]["X"], 0);
+    EXPECT_GT(std::fabs(item["apart_at"]["X"].get<double>()), 100);
+
+    const std::string because = ", because: it is taken off there}";
+    out = check(with(leaving, "reason: guides}", "reason: guides" + because));
+    EXPECT_FALSE(has(out, "exclusion of")) << out;
+    EXPECT_TRUE(has(out, "; because it is taken off there\n")) << out;
+    out = check(with(machine, "reason: guides}", "reason: guides" + because));
+    EXPECT_TRUE(has(out, "in contact at every place, so because explains nothing. Remove it."))
+        << out;
 }
 
 }  // namespace
