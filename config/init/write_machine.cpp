@@ -293,13 +293,23 @@ std::string reason_of(const std::vector<RoleGuess>& roles, std::uint32_t a, std:
                : "";
 }
 
-std::string pairs_text(const std::vector<RoleGuess>& roles) {
+/// The reason among the proposed ones; empty: none, so the pair is checked.
+std::string reason_in(const std::vector<ProposedExclusion>& proposed, std::uint32_t a,
+                      std::uint32_t b) {
+    const auto one = std::find_if(proposed.begin(), proposed.end(),
+                                  [&](const auto& each) { return each.a == a && each.b == b; });
+    return one == proposed.end() ? std::string() : one->reason;
+}
+
+std::string pairs_text(const std::vector<RoleGuess>& roles,
+                       const std::vector<ProposedExclusion>* proposed) {
     std::string checked;
     std::string excluded;
     const auto count = static_cast<std::uint32_t>(roles.size());
     for (std::uint32_t a = 0; a < count; ++a) {
         for (std::uint32_t b = a + 1; b < count; ++b) {
-            const std::string reason = reason_of(roles, a, b);
+            const std::string reason =
+                proposed == nullptr ? reason_of(roles, a, b) : reason_in(*proposed, a, b);
             if (reason.empty()) {
                 checked += fmt::format("  - {{a: {}, b: {}, margin_mm: 0}}\n", roles[a].name,
                                        roles[b].name);
@@ -377,7 +387,8 @@ std::string period_text(std::int64_t period_ns) {
 }  // namespace
 
 std::string machine_file_text(const std::string& name, const std::vector<SurveyedMesh>& meshes,
-                              const std::vector<RoleGuess>& roles, const IniAxes& ini) {
+                              const std::vector<RoleGuess>& roles, const IniAxes& ini,
+                              const std::vector<ProposedExclusion>* exclusions) {
     const std::int64_t period_ns = ini.servo_period_ns.value_or(0);
     std::string text = fmt::format("{}name: {}\n", kHead + 1, quoted(name, 128));
     text += axes_text(roles, ini.axes) + program_text(ini, roles) + kBodiesHead;
@@ -385,7 +396,7 @@ std::string machine_file_text(const std::string& name, const std::vector<Surveye
         text += body_text(role, meshes[role.file], roles);
     }
     text += tools_text(meshes, roles);
-    text += pairs_text(roles);
+    text += pairs_text(roles, exclusions);
     text += fmt::format(
         "\n# What the board guarantees in a stop. jerk_limited: jerk stays limited, and an axis "
         "may "

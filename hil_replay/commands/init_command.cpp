@@ -13,6 +13,7 @@
 #include "config/init/write_machine.hpp"
 #include "config/machine/parse_machine.hpp"
 #include "config/mesh/drawing_doubts.hpp"
+#include "config/mesh/load_meshes.hpp"
 #include "config/text/config_fault.hpp"
 #include "config/text/fault_text.hpp"
 #include "config/text/quote_text.hpp"
@@ -21,6 +22,8 @@
 #include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/whole_file.hpp"
+#include "firmware_if/setup/exclusion_proof.hpp"
+#include "firmware_if/setup/guard_engine.hpp"
 #include "hil_replay/commands/commands.hpp"
 
 namespace axg {
@@ -30,7 +33,7 @@ namespace fs = std::filesystem;
 
 struct InitOptions {
     std::string source;  // a folder, or an INI file
-    std::string folder, tree, out, unit;
+    std::string folder, tree, out, unit, pairs = "likely";
     bool force = false;
 };
 
@@ -169,6 +172,50 @@ bool is_sound(const std::string& text, const InitOptions& options) {
     return faults.empty();
 }
 
+/// The pairs in contact everywhere in the travel of a file that checks all; false after a message.
+/// @param text  sound (is_sound)
+bool find_permanent(const std::string& text, const std::string& mesh_root,
+                    std::vector<ProposedExclusion>& out) {
+    LoadedMachine loaded;
+    std::vector<ConfigFault> faults = parse_machine(text, "", loaded.machine);
+    if (faults.empty()) {
+        faults = load_meshes(loaded.machine, mesh_root, loaded.meshes);
+    }
+    for (const ConfigFault& fault : faults) {
+        fmt::print(stderr, "{}\n", to_string(fault));
+    }
+    if (!faults.empty()) {
+        return false;
+    }
+    const std::vector<Pair>& pairs = loaded.machine.pairs;
+    const auto found = judge_over_travel(loaded, pairs);
+    if (!found) {
+        fmt::print(stderr, "{}\n", kNoLaneSet);
+        return false;
+    }
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        if ((*found)[i].verdict == TravelVerdict::always_near) {
+            out.push_back({pairs[i].a, pairs[i].b, "in contact at every place of this travel"});
+        }
+    }
+    return true;
+}
+
+/// The file's text, which loads; empty after a message.
+/// @param mesh_root  the folder that the names of the meshes begin from
+std::string sound_text(const InitOptions& options, const std::string& mesh_root,
+                       const std::vector<SurveyedMesh>& meshes, const std::vector<RoleGuess>& roles,
+                       const IniAxes& known) {
+    const std::string name = escaped(fs::path(options.out).stem().string(), 100);
+    std::vector<ProposedExclusion> permanent;
+    const bool is_all = options.pairs == "all";
+    std::string text = machine_file_text(name, meshes, roles, known, is_all ? &permanent : nullptr);
+    if (!is_sound(text, options) || (is_all && !find_permanent(text, mesh_root, permanent))) {
+        return {};
+    }
+    return is_all ? machine_file_text(name, meshes, roles, known, &permanent) : text;
+}
+
 /// The extents of each body in the unit that was passed, one a line, and the doubts about them.
 void show_sizes(const std::vector<RoleGuess>& roles, const std::vector<SurveyedMesh>& meshes,
                 std::FILE* stream) {
@@ -225,7 +272,8 @@ int init(InitOptions options, const CommandFiles& names) {
     if (!find_roles(options, files, *unit, roles)) {
         return kExitInput;
     }
-    const std::string way = way_down(fs::path(options.out).parent_path(), options.folder);
+    const std::string folder_of_out = fs::path(options.out).parent_path().string();
+    const std::string way = way_down(folder_of_out, options.folder);
     const bool needs_root = way.empty();
     std::vector<SurveyedMesh> meshes;
     bool sound = true;
@@ -242,9 +290,9 @@ int init(InitOptions options, const CommandFiles& names) {
                    "no file written. Repair these meshes, or move them out of the folder.\n");
         return kExitInput;
     }
-    const std::string name = escaped(fs::path(options.out).stem().string(), 100);
-    const std::string text = machine_file_text(name, meshes, roles, known);
-    if (!is_sound(text, options)) {
+    const std::string text =
+        sound_text(options, needs_root ? options.folder : folder_of_out, meshes, roles, known);
+    if (text.empty()) {
         return kExitInput;
     }
     if (!write_whole_file(options.out, text, stderr)) {
@@ -285,6 +333,13 @@ void add_init(CommandLine& line) {
             "--unit", options->unit,
             "unit of the STL files; without it, init prints the size of each file in every unit")
         .one_of({"mm", "inch", "m", "um"});
+    command
+        .add_option(
+            "--pairs", options->pairs,
+            "likely: check no carrier against what it carries; all: check every pair not in "
+            "contact at every place of the travel")
+        .one_of({"likely", "all"})
+        .shows_default();
     command.add_flag("--force", options->force, "overwrite an existing file");
     command.set_action([options, files = command.files()] { return init(*options, *files); });
 }

@@ -518,6 +518,30 @@ TEST_F(Commands, TheHashChangesWithEachValueAndWithNothingElse) {
     EXPECT_NE(hash_of(text), hash);
 }
 
+// Every pair is checked but those that overlap everywhere, whatever carries what.
+TEST_F(Commands, InitWithAllPairsExcludesPermanentContactOnly) {
+    write_mesh("base.stl", box({-400, -400, -20}, {400, 400, 0}));
+    write_mesh("x.stl", box({-30, -30, 0}, {30, 30, 20}));         // on the base
+    write_mesh("z.stl", box({-30, -30, 420}, {30, 30, 500}));      // above both
+    write_mesh("y.stl", box({100, -300, 230}, {120, -280, 250}));  // on nothing
+    const std::vector<std::string> words{"init",   path("meshes"), "-o",     path("m.yaml"),
+                                         "--unit", "mm",           "--force"};
+    std::vector<std::string> all = words;
+    all.insert(all.end(), {"--pairs", "all"});
+    ASSERT_EQ(axguard(words).exit_code, kExitClean);
+    Machine likely, whole;
+    ASSERT_TRUE(load_machine(path("m.yaml"), likely).empty());
+    const Outcome init = axguard(all);
+    ASSERT_EQ(init.exit_code, kExitClean) << init.err;
+    ASSERT_TRUE(load_machine(path("m.yaml"), whole).empty());
+    EXPECT_GT(likely.exclusions.size(), 1U);
+    ASSERT_EQ(whole.exclusions.size(), 1U) << read(path("m.yaml"));
+    EXPECT_EQ(whole.bodies[whole.exclusions[0].a].name, "base");
+    EXPECT_EQ(whole.bodies[whole.exclusions[0].b].name, "x");
+    EXPECT_EQ(whole.exclusions[0].reason, "REVIEW: in contact at every place of this travel");
+    EXPECT_EQ(whole.pairs.size(), 5U);
+}
+
 // A carriage that leaves its rail at the end of the travel: an exclusion that hides a contact is
 // reviewed until the file explains it; one that hides none, or a permanent one, is not.
 TEST_F(Commands, CheckListsAnExclusionThatHidesAContact) {
