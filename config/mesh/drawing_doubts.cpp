@@ -88,7 +88,7 @@ class DrawingDoubts {
         const Pose at = tool.mesh.turns ? Pose{} : tool.at;
         const auto pieces = pieces_of(triangles, at);
         const double top_mm = pieces.back().second;
-        if (top_mm > kDrawnApartMmMax) {
+        if (top_mm > kDrawnApartMmMax && may_be_in_spindle(triangles, at)) {
             add(tool.mesh.where, key,
                 fmt::format("{} reaches {:.6g} mm above the spindle nose, into the spindle. A tool "
                             "hangs below z = 0: correct at_mm or the heights, {}.",
@@ -110,6 +110,35 @@ class DrawingDoubts {
         doubt_hidden(tool, key, at);
     }
 
+    /// The tool body; null: none, or nothing carries it.
+    [[nodiscard]] const Body* carried_tool_body() const {
+        const auto holder = std::find_if(machine_.bodies.begin(), machine_.bodies.end(),
+                                         [](const Body& body) { return body.is_tool; });
+        return holder == machine_.bodies.end() || holder->parent == kNoIndex ? nullptr : &*holder;
+    }
+
+    /// From the frame of the tool body to that of the body that carries it.
+    [[nodiscard]] Pose to_spindle(const Body& holder) const {
+        const auto place = static_cast<std::size_t>(&holder - machine_.bodies.data());
+        return relative_pose(placed_[place], placed_[holder.parent]);
+    }
+
+    /// False: the boxes of the tool and of the body that carries it do not overlap, because that
+    /// body ends above z = 0 of the tool.
+    [[nodiscard]] bool may_be_in_spindle(std::span<const Triangle> triangles,
+                                         const Pose& at) const {
+        const Body* const holder = carried_tool_body();
+        if (holder == nullptr || meshes_.bodies[holder->parent].triangles.empty()) {
+            return true;
+        }
+        const SurfaceBox spindle = box_of(meshes_.bodies[holder->parent].triangles);
+        const SurfaceBox tool = box_of(triangles, compose(to_spindle(*holder), at));
+        const Vec3d from_low = spindle.high_mm - tool.low_mm;
+        const Vec3d from_high = tool.high_mm - spindle.low_mm;
+        return std::min({from_low.x, from_low.y, from_low.z, from_high.x, from_high.y,
+                         from_high.z}) > kDrawnApartMmMax;
+    }
+
     static std::string highest_section(const Tool& tool, const Pose& at) {
         std::string names;
         for (const Shape& section : tool.mesh.shapes) {
@@ -123,14 +152,11 @@ class DrawingDoubts {
 
     /// A section inside the body that carries the tool is in no pair that could see it.
     void doubt_hidden(const Tool& tool, const std::string& key, const Pose& at) {
-        const auto holder = std::find_if(machine_.bodies.begin(), machine_.bodies.end(),
-                                         [](const Body& body) { return body.is_tool; });
-        if (holder == machine_.bodies.end() || holder->parent == kNoIndex) {
+        const Body* const holder = carried_tool_body();
+        if (holder == nullptr) {
             return;
         }
         const std::vector<Triangle>& spindle = meshes_.bodies[holder->parent].triangles;
-        const auto place = static_cast<std::size_t>(holder - machine_.bodies.begin());
-        const Pose to_spindle = relative_pose(placed_[place], placed_[holder->parent]);
         const SurfaceBox outer = box_of(spindle);
         for (const Shape& section : tool.mesh.shapes) {
             std::vector<Triangle> both = triangles_of(section).triangles;
@@ -138,7 +164,7 @@ class DrawingDoubts {
             if (section.name.empty() || box_of(both).high_mm.z > kDrawnApartMmMax) {
                 continue;  // the nose is judged above
             }
-            place_triangles(to_spindle, both);
+            place_triangles(to_spindle(*holder), both);
             const SurfaceBox inner = box_of(both);
             const Vec3d below = inner.low_mm - outer.low_mm, above = outer.high_mm - inner.high_mm;
             if (spindle.empty() ||

@@ -100,6 +100,23 @@ TEST(DrawingDoubts, OneMillimetreIsAllowed) {
     }
 }
 
+// A head that is drawn from its spindle's bearing up leaves room for a holder above the tool's
+// zero.
+TEST(DrawingDoubts, AHolderUpToASpindleThatEndsHigherIsRight) {
+    for (const double top : {40.0, 41.0, 41.1}) {
+        Drawing drawing;
+        drawing.meshes.bodies[0].triangles = test::box({-50, -50, 40}, {50, 50, 200});
+        drawing.add_tool({{"mill", -30, 20}, {"holder", 20, top}});
+        EXPECT_EQ(has(drawing.doubts(), "into the spindle"), top > 41) << drawing.doubts();
+    }
+    Drawing aside;  // the box of the tool is beside the spindle's, as an angle head's
+    aside.meshes.bodies[0].triangles = test::box({4.5F, -50, 0}, {104.5F, 50, 200});
+    aside.add_tool({{"holder", -30, 40}});
+    EXPECT_EQ(aside.doubts(), "");
+    aside.meshes.bodies[0].triangles = test::box({3.5F, -50, 0}, {103.5F, 50, 200});
+    EXPECT_TRUE(has(aside.doubts(), "into the spindle"));
+}
+
 // A profile has no section to name.
 TEST(DrawingDoubts, AProfileWithHeightsAboveZero) {
     Drawing drawing;
