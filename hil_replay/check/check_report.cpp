@@ -285,4 +285,29 @@ void report_guesses(CheckReport& report, const std::string& file) {
     }
 }
 
+std::vector<bool> guessed_joints(const LoadedMachine& loaded) {
+    const std::vector<Body>& bodies = loaded.machine.bodies;
+    std::vector<bool> out(bodies.size());
+    const std::string& text = loaded.source.text;
+    auto body = bodies.end();
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t end = std::min(text.find('\n', at), text.size());
+        const std::string line = text.substr(at, end - at);
+        at = end + 1;
+        if (const std::size_t key = line.find("name: "); key != std::string::npos) {
+            const std::size_t first = key + 6;
+            const std::string name =
+                line.substr(first, line.find_first_of(" ,}#\r", first) - first);
+            body = std::find_if(bodies.begin(), bodies.end(),
+                                [&](const Body& one) { return one.name == name; });
+        }
+        const bool is_joint = line.find("pivot_mm:") != std::string::npos ||
+                              line.find("direction:") != std::string::npos;
+        if (body != bodies.end() && is_joint && line.find(kGuessMark) != std::string::npos) {
+            out[static_cast<std::size_t>(body - bodies.begin())] = true;
+        }
+    }
+    return out;
+}
+
 }  // namespace axg

@@ -96,6 +96,9 @@ void report_exclusions(CheckReport& report);
 /// Lines of the machine file that are still guesses of `axguard init`; warnings only.
 void report_guesses(CheckReport& report, const std::string& file);
 
+/// [bodies] whether a guess of `axguard init` marks the direction or the pivot of the body's axis.
+[[nodiscard]] std::vector<bool> guessed_joints(const LoadedMachine& loaded);
+
 /// Guaranteed braking distance from full speed, mm or rad.
 [[nodiscard]] double stopping_distance(const Axis& axis) noexcept;
 [[nodiscard]] double stopping_time_s(const Axis& axis) noexcept;

@@ -66,8 +66,14 @@ int write_report(const CheckOptions& options, const LoadedMachine& loaded) {
                              jog.distance * (is_rotary ? 180 / kPi : 1), is_rotary ? "deg" : "mm",
                              describe_motion(loaded.machine, jog.axis));
     }
-    const RunPage run{loaded,          page.finish(), nullptr, loaded.machine.deadline_us,
-                      "axguard check", words,         "[]"};
+    const RunPage run{.loaded = loaded,
+                      .samples = page.finish(),
+                      .cycles = nullptr,
+                      .deadline_us = loaded.machine.deadline_us,
+                      .title = "axguard check",
+                      .words = words,
+                      .stops = "[]",
+                      .guessed_axes = guessed_joints(loaded)};
     return write_run_page(options.report, run, stderr) ? kExitClean : kExitInternal;
 }
 

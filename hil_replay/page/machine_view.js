@@ -7,6 +7,7 @@ const BODY_COLOURS = [0x6b7689, 0x3f76a3, 0x3f8050, 0xa86a1c, 0x8f5f8f, 0xb3574c
                       0x77774f, 0x7a64a0, 0x94706a];
 const REACH_COLOUR = 0x1a4fd6, REACH_OPACITY = 0.14;
 const TOUCH_COLOUR = 0xd00000, NEAR_COLOUR = 0xff7b00, POINT_COLOUR = 0x000000;
+const AXIS_COLOUR = 0x1a4fd6, GUESS_COLOUR = 0xc05a00;
 const CONTACT_MM = 12, CONTACT_VIEW = 5;  // the least that is looked at, from so many times as far
 const SEEN_THROUGH = 0.35;  // of the two bodies, where their contact is looked at
 
@@ -29,8 +30,8 @@ function jointMotion(body, axes, positions) {
   return m.setPosition(pivot.clone().sub(pivot.clone().applyMatrix4(m)));
 }
 
-/** [bodies] from each body's mesh frame to machine coordinates. */
-function placeBodies(machine, positions) {
+/** [bodies] the motion of each body away from its zero pose. */
+function moveBodies(machine, positions) {
   const moved = [];
   for (const body of machine.bodies) {
     const m = body.parent === null ? new THREE.Matrix4() : moved[body.parent].clone();
@@ -39,7 +40,28 @@ function placeBodies(machine, positions) {
     }
     moved.push(m);
   }
-  return moved.map((m, i) => m.clone().multiply(matrixOf(machine.bodies[i].at)));
+  return moved;
+}
+
+/** [bodies] from each body's mesh frame to machine coordinates. */
+function placeBodies(machine, positions) {
+  return moveBodies(machine, positions).map(
+    (m, i) => m.multiply(matrixOf(machine.bodies[i].at)));
+}
+
+/** A name in front of all surfaces, as a picture of `height` units. */
+function labelOf(text, colour, height) {
+  const canvas = document.createElement("canvas"), context = canvas.getContext("2d");
+  canvas.width = 256;
+  canvas.height = 64;
+  context.font = "bold 40px sans-serif";
+  context.fillStyle = `#${colour.toString(16).padStart(6, "0")}`;
+  context.fillText(text, 4, 48);
+  const sprite = new THREE.Sprite(new THREE.SpriteMaterial(
+    {map: new THREE.CanvasTexture(canvas), depthTest: false, transparent: true}));
+  sprite.scale.set(height * canvas.width / canvas.height, height, 1);
+  sprite.renderOrder = 5;
+  return sprite;
 }
 
 /** The three corners of triangle `index`, in the mesh's own frame. */
@@ -85,6 +107,36 @@ class MachineView {
     this.scene.add(this.marked);
     this.reach = new THREE.Group();
     this.scene.add(this.reach);
+    this.axisLines = data.shows_axes ? this.addAxisLines() : [];
+  }
+
+  /** Each rotary axis as a line through its pivot, longer than the machine; a guess is marked. */
+  addAxisLines() {
+    const machine = this.data.machine, lines = [];
+    const size = Math.max(100, ...this.bodies.map((object) => {
+      object.geometry.computeBoundingSphere();
+      return object.geometry.boundingSphere ? object.geometry.boundingSphere.radius || 0 : 0;
+    }));
+    for (const body of machine.bodies) {
+      if (body.axis === null || machine.axes[body.axis].unit !== "deg") continue;
+      const direction = new THREE.Vector3(...body.direction);
+      const pivot = new THREE.Vector3(...body.pivot_mm);
+      const ends = [-1, 1].map((sign) => pivot.clone().addScaledVector(direction, sign * size));
+      const colour = body.is_guess ? GUESS_COLOUR : AXIS_COLOUR;
+      const group = new THREE.Group();
+      const line = new THREE.Line(new THREE.BufferGeometry().setFromPoints(ends),
+                                  new THREE.LineBasicMaterial({color: colour, depthTest: false,
+                                                               transparent: true}));
+      line.renderOrder = 4;
+      const name = machine.axes[body.axis].name + (body.is_guess ? "+ GUESS" : "+");
+      const label = labelOf(name, colour, 0.12 * size);
+      label.position.copy(ends[1]);
+      group.add(line, label);
+      group.matrixAutoUpdate = false;
+      this.scene.add(group);
+      lines.push({group, parent: body.parent});
+    }
+    return lines;
   }
 
   addMesh(mesh, bodyIndex) {
@@ -149,6 +201,10 @@ class MachineView {
         object.matrix.multiplyMatrices(this.placed[body], matrixOf(machine.tools[i].at));
       }
     });
+    const moved = this.axisLines.length === 0 ? [] : moveBodies(machine, positions);
+    for (const {group, parent} of this.axisLines) {
+      group.matrix.copy(parent === null ? new THREE.Matrix4() : moved[parent]);
+    }
     this.slot = slot;
     this.mark(nearest, touching);
     this.draw();

@@ -7,6 +7,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/base/time_histogram.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
@@ -52,6 +53,8 @@ struct RunPage {
     // [{"time_us", "reason", may be: "axes": {"X_mm": ..}, "pairs": [{"pair", "triangles"}]}]
     std::string stops;
     const ProgramLines* program = nullptr;  // null or empty: no lines
+    // [bodies] whether the line of a rotary axis is a guess; empty: the page draws no axes.
+    std::vector<bool> guessed_axes{};
 };
 
 /// Writes the page whole or not at all. False: `messages` has the reason, and what to install.

@@ -172,13 +172,17 @@ std::string machine_data(const LoadedMachine& loaded) {
 }
 
 std::string page_data(const RunPage& page) {
-    const nlohmann::ordered_json head{
+    nlohmann::ordered_json head{
         {"title", escaped(page.title, kTitleCharactersMax)},
         {"words", page.words},
         {"within_mm", kPageWithinMm},
         {"deadline_us", page.deadline_us},
         {"machine", machine_json(page.loaded)},
+        {"shows_axes", !page.guessed_axes.empty()},
     };
+    for (std::size_t i = 0; i < page.guessed_axes.size(); ++i) {
+        head["machine"]["bodies"][i]["is_guess"] = static_cast<bool>(page.guessed_axes[i]);
+    }
     // A name may hold any bytes; a page holds UTF-8 alone.
     std::string text = head.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
     text.pop_back();  // its closing brace: what is long follows, without a tree of numbers

@@ -17,6 +17,7 @@
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/machine_options.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
+#include "hil_replay/check/check_report.hpp"
 #include "hil_replay/commands/commands.hpp"
 #include "tests/support/json_value.hpp"
 #include "tests/support/machine_text.hpp"
@@ -542,50 +543,31 @@ TEST_F(Commands, InitWithAllPairsExcludesPermanentContactOnly) {
     EXPECT_EQ(whole.pairs.size(), 5U);
 }
 
-// A carriage that leaves its rail at the end of the travel: an exclusion that hides a contact is
-// reviewed until the file explains it; one that hides none, or a permanent one, is not.
-TEST_F(Commands, CheckListsAnExclusionThatHidesAContact) {
-    const std::string machine = R"(version: 1
-name: rail
-axes:
-  X: {kind: linear, travel_mm: [-100, 100], speed_mm_min: 6000, acceleration_mm_s2: 1000,
-      jerk_mm_s3: 20000, stopping_mm_s2: 800, position_error_mm: 0.001, following_error_mm: 0}
-bodies:
-  - {name: rail, mesh: {shapes: [{box_mm: [400, 20, 20], at_mm: [0, 0, -20]}]}}
-  - {name: wall, mesh: {shapes: [{box_mm: [10, 20, 20], at_mm: [500, 0, 0]}]}}
-  - {name: carriage, axis: X, direction: [1, 0, 0], mesh: {shapes: [{box_mm: [60, 60, 25]}]}}
-pairs:
-  - {a: wall, b: carriage, margin_mm: 1}
-exclusions:
-  - {a: rail, b: wall, reason: both are fixed}
-  - {a: rail, b: carriage, reason: guides}
-)";
-    const auto check = [&](const std::string& text) {
-        std::ofstream(path("m.yaml")) << text;
-        const Outcome run = axguard({"check", path("m.yaml"), "--json=" + path("m.json")});
-        EXPECT_EQ(run.exit_code, kExitClean) << run.err;
-        return run.out;
+// The page marks an axis whose direction or pivot is still a guess.
+TEST_F(Commands, AGuessedAxisIsKnownUntilItsMarkGoes) {
+    write_meshes();
+    ASSERT_EQ(axguard({"init", path("meshes"), "-o", path("m.yaml"), "--unit", "mm"}).exit_code,
+              kExitClean);
+    const auto guessed = [&] {
+        LoadedMachine loaded;
+        EXPECT_TRUE(load(path("m.yaml"), "", loaded, stderr));
+        std::string names;
+        const std::vector<bool> found = guessed_joints(loaded);
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            names += found[i] ? loaded.machine.bodies[i].name + ' ' : "";
+        }
+        return names;
     };
-    std::string out = check(machine);
-    EXPECT_TRUE(has(out, "  rail-wall                never nearer than ")) << out;
-    EXPECT_TRUE(has(out, "  rail-carriage            in contact at every place\n")) << out;
-    EXPECT_FALSE(has(out, "exclusion of")) << out;
-
-    const std::string leaving = with(machine, "box_mm: [400, 20, 20]", "box_mm: [140, 20, 20]");
-    out = check(leaving);
-    EXPECT_TRUE(has(out, "exclusion of rail and carriage: meets at X 0 and is apart at X ")) << out;
-    const auto item = Json::parse(read(path("m.json")))["exclusions"][1];
-    EXPECT_EQ(item["over_travel"], "both");
-    EXPECT_EQ(item["meets_at"]["X"], 0);
-    EXPECT_GT(std::fabs(item["apart_at"]["X"].get<double>()), 100);
-
-    const std::string because = ", because: it is taken off there}";
-    out = check(with(leaving, "reason: guides}", "reason: guides" + because));
-    EXPECT_FALSE(has(out, "exclusion of")) << out;
-    EXPECT_TRUE(has(out, "; because it is taken off there\n")) << out;
-    out = check(with(machine, "reason: guides}", "reason: guides" + because));
-    EXPECT_TRUE(has(out, "in contact at every place, so because explains nothing. Remove it."))
-        << out;
+    EXPECT_EQ(guessed(), "saddle table a_axis c headstock ");
+    std::string text = read(path("m.yaml"));
+    const std::size_t at = text.find("  - name: a_axis"), end = text.find("  - name: c\n");
+    std::string part = text.substr(at, end - at);
+    for (const char* key : {"direction:", "pivot_mm:"}) {
+        const std::size_t mark = part.find("# GUESS", part.find(key));
+        part.erase(mark, part.find('\n', mark) - mark);
+        std::ofstream(path("m.yaml")) << text.substr(0, at) + part + text.substr(end);
+        EXPECT_EQ(has(guessed(), "a_axis"), std::string(key) == "direction:");
+    }
 }
 
 }  // namespace

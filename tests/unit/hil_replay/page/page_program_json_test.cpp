@@ -142,5 +142,18 @@ TEST(PageProgram, APageOfTheWorstProgramKeepsItsBound) {
     EXPECT_LT(page_data(run.page(&few)).size(), kProgramBytesMax + 100'000);
 }
 
+TEST(PageAxes, AreDrawnWhereTheCommandKnowsWhichAreGuesses) {
+    SampledRun run(4);
+    run.loaded.machine.bodies.resize(2);
+    run.loaded.meshes.bodies.resize(2);
+    RunPage page = run.page(nullptr);
+    EXPECT_EQ(Json::parse(page_data(page))["shows_axes"], false);
+    page.guessed_axes = {false, true};
+    const auto data = Json::parse(page_data(page));
+    EXPECT_EQ(data["shows_axes"], true);
+    EXPECT_EQ(data["machine"]["bodies"][0]["is_guess"], false);
+    EXPECT_EQ(data["machine"]["bodies"][1]["is_guess"], true);
+}
+
 }  // namespace
 }  // namespace axg::test
