@@ -13,8 +13,9 @@ END
 }
 
 base=(git ca-certificates cmake ninja-build g++ python3 libeigen3-dev libyaml-cpp-dev libcli11-dev
-      libfmt-dev nlohmann-json3-dev libgmp-dev libgtest-dev librapidcheck-dev libvalijson-dev
-      libmd-dev libmeshoptimizer-dev libmicrohttpd-dev zlib1g-dev libjs-three libjs-dygraphs)
+      libfmt-dev nlohmann-json3-dev libtinyxml2-dev libgmp-dev libgtest-dev librapidcheck-dev
+      libvalijson-dev libmd-dev libmeshoptimizer-dev libmicrohttpd-dev zlib1g-dev libjs-three
+      libjs-dygraphs)
 # Second compiler, its sanitizers and fuzzer, formatter and linter.
 extra=(pkg-config clang-14 libclang-rt-14-dev clang-format-14 clang-tidy-14 ccache)
 # Exact oracle, peers of the benchmark, CAN tools whose logs are read and written.

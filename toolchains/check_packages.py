@@ -28,12 +28,13 @@ LIBRARIES = {"libc.so.6": "libc6", "libm.so.6": "libc6", "ld-linux-aarch64.so.1"
              "libcudart.so.12": "cuda-cudart-12-6",
              "libfmt.so.9": "libfmt9", "libmd.so.0": "libmd0",
              "libmeshoptimizer.so.2d": "libmeshoptimizer2d",
-             "libmicrohttpd.so.12": "libmicrohttpd12", "liblinuxcnchal.so.0": "linuxcnc-uspace"}
+             "libmicrohttpd.so.12": "libmicrohttpd12", "libtinyxml2.so.9": "libtinyxml2-9",
+             "liblinuxcnchal.so.0": "linuxcnc-uspace"}
 DEV_OF = {"libc6": "libc6-dev", "libgcc-s1": "libgcc-12-dev", "libstdc++6": "libstdc++-12-dev",
           "zlib1g": "zlib1g-dev", "libgmp10": "libgmp-dev", "libgmpxx4ldbl": "libgmp-dev",
           "libyaml-cpp0.7": "libyaml-cpp-dev", "libfmt9": "libfmt-dev", "libmd0": "libmd-dev",
           "libmeshoptimizer2d": "libmeshoptimizer-dev", "libmicrohttpd12": "libmicrohttpd-dev",
-          "linuxcnc-uspace": "linuxcnc-uspace-dev"}
+          "libtinyxml2-9": "libtinyxml2-dev", "linuxcnc-uspace": "linuxcnc-uspace-dev"}
 LINUXCNC = {"axguard-hal", "axguard_stop.so"}  # the engine is in libaxguard
 PACKAGES = {"axguard", "axguardd", "axguard-board-dev", "axguard-doc", "axguard-lab", "libaxguard0",
             "libaxguard-dev"}

@@ -29,5 +29,8 @@ find_path(AXG_MD_INCLUDE_DIR sha2.h REQUIRED)  # libmd: SHA-256 of pinned meshes
 find_library(AXG_MD_LIBRARY NAMES ${AXG_MD_NAMES} REQUIRED)
 find_package(ZLIB)  # without it compressed traces are refused, with a word on what to do
 find_package(meshoptimizer QUIET)  # without it a machine file's simplify_mm is refused
+if(NOT AXG_STATIC_LIBRARIES)
+  find_package(tinyxml2 QUIET)  # without it axguard init --urdf is refused; no static one exists
+endif()
 find_path(AXG_MICROHTTPD_INCLUDE_DIR microhttpd.h)  # without it axguard watch is refused
 find_library(AXG_MICROHTTPD_LIBRARY NAMES microhttpd)

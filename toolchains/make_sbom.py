@@ -21,7 +21,7 @@ TARGETS = ("axguard", "axguard-hal", "axguard-lab", "axguardd", "axguard_stop.so
            "libaxguard.a")
 # Debian's short names that SPDX spells otherwise.
 SPDX_NAMES = {"Expat": "MIT", "BSD-3-clause": "BSD-3-Clause", "BSD-2-clause": "BSD-2-Clause",
-              "MPL-2": "MPL-2.0", "zlib": "Zlib", "GPL-3": "GPL-3.0-only",
+              "MPL-2": "MPL-2.0", "zlib": "Zlib", "zlib/libpng": "Zlib", "GPL-3": "GPL-3.0-only",
               "BSD-3-Clause": "BSD-3-Clause", "LGPL-2.1+": "LGPL-2.1-or-later",
               "LGPL-3+": "LGPL-3.0-or-later",
               "GPL-2": "GPL-2.0-only", "GPL-2+": "GPL-2.0-or-later"}

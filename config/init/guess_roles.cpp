@@ -131,7 +131,7 @@ std::uint32_t carrier_of(char role, const std::vector<RoleGuess>& placed) {
     const bool head_side = role == 'Z' || role == 'T';
     std::uint32_t carrier = kNoParent;
     for (std::uint32_t i = 0; i < placed.size(); ++i) {
-        if (placed[i].axis != '\0' && placed[i].is_table_side != head_side) {
+        if (!placed[i].axis.empty() && placed[i].is_table_side != head_side) {
             carrier = i;
         }
     }
@@ -139,6 +139,14 @@ std::uint32_t carrier_of(char role, const std::vector<RoleGuess>& placed) {
 }
 
 }  // namespace
+
+char axis_in(std::string_view name) {
+    const Names words = words_of(name);
+    const auto found = std::find_if(words.begin(), words.end(), [](const std::string& word) {
+        return word.size() == 1 && std::string_view("xyzabc").find(word[0]) != std::string::npos;
+    });
+    return found == words.end() ? '\0' : static_cast<char>((*found)[0] - 'a' + 'A');
+}
 
 std::string legal_name(const std::string& stem, const std::vector<RoleGuess>& others) {
     std::string name;
@@ -196,13 +204,13 @@ std::vector<RoleGuess> guess_roles(const std::vector<std::string>& files) {
         guess.is_tool = one.role == 'T';
         const bool is_axis = one.role != '\0' && one.role != 'T' && one.role != 'F';
         const auto same = std::find_if(out.begin(), out.end(), [&one, is_axis](const RoleGuess& o) {
-            return is_axis && o.axis == one.role;
+            return is_axis && o.axis == std::string(1, one.role);
         });
         if (same != out.end()) {  // a second part of the same axis rides on the first
             guess.parent = static_cast<std::uint32_t>(same - out.begin());
         } else if (is_axis || guess.is_tool) {
             guess.parent = carrier_of(one.role, out);
-            guess.axis = is_axis ? one.role : '\0';
+            guess.axis = is_axis ? std::string(1, one.role) : "";
             guess.is_table_side = is_axis && one.role != 'Z';
         }
         out.push_back(std::move(guess));

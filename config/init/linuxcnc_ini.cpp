@@ -157,9 +157,9 @@ class Reader {
             return std::move(out_);
         }
         for (const char letter : letters) {
-            const bool is_known =
-                std::any_of(out_.axes.begin(), out_.axes.end(),
-                            [letter](const IniAxis& axis) { return axis.letter == letter; });
+            const bool is_known = std::any_of(
+                out_.axes.begin(), out_.axes.end(),
+                [letter](const IniAxis& axis) { return axis.name == std::string(1, letter); });
             if (!is_known) {
                 take_axis(letter);
             }
@@ -262,7 +262,7 @@ class Reader {
     void take_axis(char letter) {
         const std::size_t faults_before = out_.faults.size();
         IniAxis& axis = out_.axes.emplace_back();
-        axis.letter = letter;
+        axis.name = std::string(1, letter);
         axis.is_rotary = letter >= 'A' && letter <= 'C';
         axis.follows_tip = !is_trivial_;
         scale_ = axis.is_rotary ? angular_ : linear_;
@@ -310,13 +310,13 @@ class Reader {
                 source_of(*units, "TRAJ", "LINEAR_UNITS"));
         }
         for (const IniAxis& axis : out_.axes) {
-            const std::string section = std::string("AXIS_") + axis.letter;
+            const std::string section = std::string("AXIS_") + axis.name;
             const Value* const wrapped = find(section, "WRAPPED_ROTARY");
             if (axis.is_unlimited && wrapped != nullptr && is_switched_on(wrapped->text)) {
-                set("rotary", axis.letter, "wrapped",
+                set("rotary", axis.name[0], "wrapped",
                     source_of(*wrapped, section, "WRAPPED_ROTARY"));
             } else if (axis.is_unlimited) {
-                set("rotary", axis.letter, "programmed",
+                set("rotary", axis.name[0], "programmed",
                     name_ + ": [" + section + "] WRAPPED_ROTARY is not on");
             }
         }
@@ -377,14 +377,14 @@ class Reader {
         }
         for (const auto& [key, first] : {std::pair{"g28", 5161}, std::pair{"g30", 5181}}) {
             for (const IniAxis& axis : out_.axes) {
-                const auto place = static_cast<int>(kAxisLetters.find(axis.letter));
+                const auto place = static_cast<int>(kAxisLetters.find(axis.name));
                 // The file has X Y Z A B C U V W, as kAxisLetters.
                 const int index = first + place;
                 if (const auto stored = parameter(file.text, index)) {
                     char text[40];
                     std::snprintf(text, sizeof text, "%.9g",
                                   *stored * (axis.is_rotary ? angular_ : linear_));
-                    set(key, axis.letter, text,
+                    set(key, axis.name[0], text,
                         source + ", parameters " + std::to_string(first) + " on");
                 }
             }
@@ -446,7 +446,7 @@ class Reader {
         const std::string word = upper(without_comment(type->text));
         if (word == "LINEAR" || word == "ANGULAR") {
             fault(section, "TYPE", type,
-                  wanted + ": programs count " + axis.letter +
+                  wanted + ": programs count " + axis.name +
                       (axis.is_rotary
                            ? " in degrees. Give a slide the letter U, V or W, and a second motor "
                              "the letter of its axis, as in coordinates=XYYZ"
@@ -462,7 +462,7 @@ class Reader {
             const std::string key = is_far_up ? "MAX_LIMIT" : "MIN_LIMIT";
             const Value* value = find(section, key);
             for (std::size_t joint = 0; value == nullptr && joint < joints_.size(); ++joint) {
-                if (joints_[joint] == axis.letter) {
+                if (joints_[joint] == axis.name[0]) {
                     value = find("JOINT_" + std::to_string(joint), key);
                 }
             }

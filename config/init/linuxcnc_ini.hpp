@@ -16,7 +16,7 @@ namespace axg {
 /// One axis, from its joints and, where joints and axes are the same (trivkins), from [AXIS_L]: of
 /// several limits the tightest. A value that the file does not state is empty.
 struct IniAxis {
-    char letter = 'X';
+    std::string name = "X";     // a letter; of a joint of a URDF file also J1, J2...
     bool is_rotary = false;     // A B C
     bool is_unlimited = false;  // WRAPPED_ROTARY, or a rotary axis without limits within ten turns
     /// Kinematics for the tip: LinuxCNC limits the tip, and the speed of no joint.
@@ -36,6 +36,7 @@ struct IniSetting {
 struct IniAxes {
     std::vector<IniAxis> axes;                    // in the order of COORDINATES, each letter once
     std::optional<std::int64_t> servo_period_ns;  // [EMCMOT] SERVO_PERIOD
+    bool exceeds_limits = true;                   // as LinuxCNC does where moves blend
     std::vector<IniSetting> program{};            // keys together
     std::vector<std::string> program_doubts{};    // what decides a program and is in no key
     std::vector<std::string> faults;              // "machine.ini:12: [AXIS_X] MAX_LIMIT: ..."

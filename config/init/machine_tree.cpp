@@ -204,11 +204,11 @@ class TreeReader {
     void doubt_ways() {
         std::vector<bool> is_head(roles_.size());
         for (std::size_t i = 0; i < roles_.size(); ++i) {
-            is_head[i] = (roles_[i].axis == 'Z' && !roles_[i].is_reversed) ||
+            is_head[i] = (roles_[i].axis == "Z" && !roles_[i].is_reversed) ||
                          (roles_[i].parent != kNoParent && is_head[roles_[i].parent]);
         }
         for (std::size_t i = roles_.size(); i-- > 0;) {
-            if (roles_[i].axis == 'Z' && is_head[i]) {
+            if (roles_[i].axis == "Z" && is_head[i]) {
                 for (std::uint32_t k = roles_[i].parent; k != kNoParent; k = roles_[k].parent) {
                     is_head[k] = true;
                 }
@@ -218,7 +218,7 @@ class TreeReader {
             roles_.begin(), roles_.end(), [](const RoleGuess& role) { return role.is_reversed; });
         for (std::size_t i = 0; i < roles_.size(); ++i) {
             RoleGuess& role = roles_[i];
-            role.is_table_side = role.axis != '\0' && !is_head[i];
+            role.is_table_side = !role.axis.empty() && !is_head[i];
             if (!role.is_table_side || role.is_reversed) {
                 continue;
             }
@@ -248,7 +248,7 @@ void require_motion(const std::vector<RoleGuess>& roles, const YamlNode& documen
         faults.add(line, escaped(key, 64), fmt::format("{} part", roles.size()),
                    "two parts or more: a map with id, model, type, position, axis for each");
     } else if (std::none_of(roles.begin(), roles.end(),
-                            [](const RoleGuess& role) { return role.axis != '\0'; })) {
+                            [](const RoleGuess& role) { return !role.axis.empty(); })) {
         faults.add(line, escaped(key, 64), "no part that moves",
                    "a part with type linear or angular and an axis");
     }

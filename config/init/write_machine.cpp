@@ -72,11 +72,21 @@ constexpr const char* kExclusionsHead =
 exclusions:
 )";
 
-bool is_rotary(char axis) noexcept {
-    return axis == 'A' || axis == 'B' || axis == 'C';
+/// By the joint that a file states, else by the letter.
+bool is_rotary(const std::string& axis, const std::vector<IniAxis>& known) {
+    const auto stated = std::find_if(known.begin(), known.end(),
+                                     [&axis](const IniAxis& one) { return one.name == axis; });
+    return stated != known.end() ? stated->is_rotary : axis == "A" || axis == "B" || axis == "C";
 }
 
-const char* direction_of(const RoleGuess& role) noexcept {
+std::string precise(Vec3d v) {
+    return fmt::format("[{:.10g}, {:.10g}, {:.10g}]", v.x, v.y, v.z);
+}
+
+std::string direction_of(const RoleGuess& role) {
+    if (role.direction != Vec3d{}) {
+        return precise(role.direction);
+    }
     const std::size_t axis = kAxisOrder.find(role.axis) % 3;  // A and U are along X
     if (role.is_stated ? role.is_reversed : role.is_table_side) {
         return axis == 0 ? "[-1, 0, 0]" : axis == 1 ? "[0, -1, 0]" : "[0, 0, -1]";
@@ -128,7 +138,8 @@ std::string stopping_guess(const IniAxis& axis, double speed, double stopping) {
 
 /// Travel, speed and acceleration from the control's INI file. The file states no stop, only full
 /// acceleration; without MAX_JERK, LinuxCNC limits no jerk.
-std::string known_axis_text(const IniAxis& axis) {
+/// @param limits_jerk  whether the file would state one
+std::string known_axis_text(const IniAxis& axis, bool limits_jerk) {
     const char* const unit = axis.is_rotary ? "deg" : "mm";
     const double full = axis.acceleration.value_or(axis.is_rotary ? 500 : 1000);
     const double acceleration = full * (axis.acceleration ? kOverIni : 1);
@@ -147,11 +158,12 @@ std::string known_axis_text(const IniAxis& axis) {
     }
     guesses += axis.speed ? "" : ", speed";
     guesses += axis.acceleration ? "" : ", acceleration";
+    guesses += limits_jerk ? "" : ", jerk";
     const std::string jerk = axis.jerk ? fmt::format("{:.9g}", *axis.jerk) : "none";
     return fmt::format(
         "  {}: {{kind: {}, travel_{}: {}, speed_{}: {:.9g}, acceleration_{}_s2: {:.9g}, "
         "jerk_{}_s3: {}, stopping_{}_s2: {:.9g}, {}}}  {}: {}\n",
-        axis.letter, axis.is_rotary ? "rotary" : "linear", unit, travel,
+        axis.name, axis.is_rotary ? "rotary" : "linear", unit, travel,
         axis.is_rotary ? "deg_s" : "mm_min", speed * (axis.is_rotary ? 1 : 60), unit, acceleration,
         unit, jerk, unit, stopping, errors_text(axis.is_rotary), kGuessMark, guesses);
 }
@@ -161,41 +173,50 @@ std::string with_slot(std::string axis_text, int slot) {
     return axis_text.insert(axis_text.find('{') + 1, fmt::format("slot: {}, ", slot));
 }
 
-std::string axes_text(const std::vector<RoleGuess>& roles, const std::vector<IniAxis>& known) {
+/// X to W, then the other axes in their order.
+std::vector<std::string> axis_names(const std::vector<IniAxis>& known) {
+    std::vector<std::string> names;
+    for (const char letter : kAxisOrder) {
+        names.emplace_back(1, letter);
+    }
+    for (const IniAxis& axis : known) {
+        if (axis.name.size() > 1) {
+            names.push_back(axis.name);
+        }
+    }
+    return names;
+}
+
+std::string axes_text(const std::vector<RoleGuess>& roles, const IniAxes& ini) {
+    const std::vector<IniAxis>& known = ini.axes;
     std::string text = kAxesHead;
-    text.insert(text.rfind("axes:"), known.empty() ? "" : kOverIniHead);
+    text.insert(text.rfind("axes:"), known.empty() || !ini.exceeds_limits ? "" : kOverIniHead);
     int slot = 0;
-    for (const char axis : kAxisOrder) {
+    for (const std::string& axis : axis_names(known)) {
         const bool used = std::any_of(roles.begin(), roles.end(),
-                                      [axis](const RoleGuess& role) { return role.axis == axis; });
+                                      [&axis](const RoleGuess& role) { return role.axis == axis; });
         const auto stated = std::find_if(known.begin(), known.end(),
-                                         [axis](const IniAxis& one) { return one.letter == axis; });
-        if (!used) {
-            text +=
-                stated == known.end()
-                    ? ""
-                    : fmt::format("  # {} of the INI file: give it to the body that it moves\n  #",
-                                  axis) +
-                          known_axis_text(*stated).substr(1);
-            continue;
-        }
+                                         [&axis](const IniAxis& one) { return one.name == axis; });
         if (stated != known.end()) {
-            text += with_slot(known_axis_text(*stated), slot++);
-            continue;
+            const std::string values = known_axis_text(*stated, ini.exceeds_limits);
+            text +=
+                used ? with_slot(values, slot++)
+                     : fmt::format("  # {} of the INI file: give it to the body that it moves\n  #",
+                                   axis) +
+                           values.substr(1);
+        } else if (used) {
+            const char* const values =
+                axis == "C" ? "{kind: rotary, travel_deg: unlimited, speed_deg_s: 90, "
+                              "acceleration_deg_s2: 500, jerk_deg_s3: 10000, stopping_deg_s2: 400"
+                : is_rotary(axis, known)
+                    ? "{kind: rotary, travel_deg: [-90, 90], speed_deg_s: 90, "
+                      "acceleration_deg_s2: 500, jerk_deg_s3: 10000, stopping_deg_s2: 400"
+                    : "{kind: linear, travel_mm: [-200, 200], speed_mm_min: 10000, "
+                      "acceleration_mm_s2: 1000, jerk_mm_s3: 20000, stopping_mm_s2: 800";
+            text += with_slot(fmt::format("  {}: {}, {}}}  {}: each number\n", axis, values,
+                                          errors_text(is_rotary(axis, known)), kGuessMark),
+                              slot++);
         }
-        const char* values =
-            axis == 'C'
-                ? "{kind: rotary, travel_deg: unlimited, speed_deg_s: 90, acceleration_deg_s2: "
-                  "500, jerk_deg_s3: 10000, stopping_deg_s2: 400"
-            : is_rotary(axis)
-                ? "{kind: rotary, travel_deg: [-90, 90], speed_deg_s: 90, acceleration_deg_s2: "
-                  "500, "
-                  "jerk_deg_s3: 10000, stopping_deg_s2: 400"
-                : "{kind: linear, travel_mm: [-200, 200], speed_mm_min: 10000, acceleration_mm_s2: "
-                  "1000, jerk_mm_s3: 20000, stopping_mm_s2: 800";
-        text += with_slot(fmt::format("  {}: {}, {}}}  {}: each number\n", axis, values,
-                                      errors_text(is_rotary(axis)), kGuessMark),
-                          slot++);
     }
     return text;
 }
@@ -206,43 +227,61 @@ std::string guess_of(const RoleGuess& role, const std::string& why, const std::s
     return reason.empty() ? std::string() : fmt::format("  {}: {}", kGuessMark, reason);
 }
 
-std::string body_text(const RoleGuess& role, const SurveyedMesh& mesh,
-                      const std::vector<RoleGuess>& roles) {
+std::string joint_text(const RoleGuess& role, const Vec3d& middle, bool is_turning) {
+    if (role.axis.empty()) {
+        return role.is_stated
+                   ? ""
+                   : fmt::format("    {}: fixed to {}; if it moves, add axis and direction\n",
+                                 kGuessMark,
+                                 role.parent == kNoParent ? "the machine's frame" : "its parent");
+    }
+    std::string text = fmt::format(
+        "    axis: {}{}{}\n"
+        "    direction: {}{}\n",
+        role.axis, role.axis_note.empty() ? "" : "  # " + role.axis_note,
+        guess_of(role, "from the name of the file"), direction_of(role),
+        guess_of(role,
+                 fmt::format("a positive command moves{} this body this way",
+                             is_turning ? " (turns, right hand)" : ""),
+                 role.way_doubt));
+    if (is_turning) {
+        text += fmt::format(
+            "    pivot_mm: {}{}\n", role.is_stated ? precise(role.pivot_mm) : numbers(middle),
+            guess_of(role, "the middle of the mesh; a point on the axis it turns about",
+                     role.pivot_doubt));
+    }
+    return text;
+}
+
+/// @param mesh  null: a body of shapes, or a bare link
+std::string body_text(const RoleGuess& role, const SurveyedMesh* mesh,
+                      const std::vector<RoleGuess>& roles, const std::vector<IniAxis>& known) {
     std::string text = fmt::format("  - name: {}\n", role.name);
     if (role.parent != kNoParent) {
         text += fmt::format("    parent: {}{}\n", roles[role.parent].name,
                             guess_of(role, "what carries it"));
     }
-    if (role.axis != '\0') {
-        text += fmt::format(
-            "    axis: {}{}\n"
-            "    direction: {}{}\n",
-            role.axis, guess_of(role, "from the name of the file"), direction_of(role),
-            guess_of(role,
-                     fmt::format("a positive command moves{} this body this way",
-                                 is_rotary(role.axis) ? " (turns, right hand)" : ""),
-                     role.way_doubt));
-    } else if (!role.is_stated) {
-        text +=
-            fmt::format("    {}: fixed to {}; if it moves, add axis and direction\n", kGuessMark,
-                        role.parent == kNoParent ? "the machine's frame" : "its parent");
-    }
-    if (is_rotary(role.axis)) {
-        const Vec3d middle = 0.5 * (mesh.min_mm + mesh.max_mm);
-        text +=
-            fmt::format("    pivot_mm: {}{}\n", numbers(role.is_stated ? role.pivot_mm : middle),
-                        guess_of(role, "the middle of the mesh; a point on the axis it turns about",
-                                 role.pivot_doubt));
-    }
+    const Vec3d middle = mesh == nullptr ? Vec3d{} : 0.5 * (mesh->min_mm + mesh->max_mm);
+    text += joint_text(role, middle, is_rotary(role.axis, known));
     if (role.is_tool) {
         return text + fmt::format("    tool: true  {}: from the name of the file\n", kGuessMark);
     }
-    for (const std::string& note : mesh.notes) {
-        text += "    # Repair the mesh or accept: " + escaped(note, 400) + '\n';
+    if (mesh == nullptr && role.shapes.empty()) {
+        return text;
     }
-    text += fmt::format("    at_mm: {}{}\n", numbers(role.at_mm),
-                        guess_of(role, "the mesh is drawn in machine coordinates"));
-    return text + "    mesh: " + mesh_of(mesh) + '\n';
+    if (mesh != nullptr) {
+        for (const std::string& note : mesh->notes) {
+            text += "    # Repair the mesh or accept: " + escaped(note, 400) + '\n';
+        }
+    }
+    text +=
+        fmt::format("    at_mm: {}{}\n", role.is_stated ? precise(role.at_mm) : numbers(role.at_mm),
+                    guess_of(role, "the mesh is drawn in machine coordinates"));
+    if (role.rotate_deg != Vec3d{}) {
+        text += fmt::format("    rotate_deg: {}\n", precise(role.rotate_deg));
+    }
+    return text + "    mesh: " +
+           (mesh == nullptr ? fmt::format("{{shapes: [{}]}}", role.shapes) : mesh_of(*mesh)) + '\n';
 }
 
 std::string tools_text(const std::vector<SurveyedMesh>& meshes,
@@ -272,7 +311,7 @@ std::string tools_text(const std::vector<SurveyedMesh>& meshes,
 /// The nearest body up the chain, itself included, that an axis moves; kNoParent: the frame carries
 /// it.
 std::uint32_t mover_of(const std::vector<RoleGuess>& roles, std::uint32_t body) noexcept {
-    while (body != kNoParent && roles[body].axis == '\0') {
+    while (body != kNoParent && roles[body].axis.empty()) {
         body = roles[body].parent;
     }
     return body;
@@ -286,7 +325,7 @@ std::string reason_of(const std::vector<RoleGuess>& roles, std::uint32_t a, std:
     const auto carries = [&](std::uint32_t carrier, std::uint32_t body) {
         const RoleGuess& role = roles[body];
         const bool by_frame = role.parent == kNoParent && mover_of(roles, carrier) == kNoParent;
-        return role.axis != '\0' && (role.parent == carrier || by_frame);
+        return !role.axis.empty() && (role.parent == carrier || by_frame);
     };
     return carries(a, b) || carries(b, a)
                ? "one carries the other, so bearings or ways may overlap in the meshes"
@@ -306,8 +345,14 @@ std::string pairs_text(const std::vector<RoleGuess>& roles,
     std::string checked;
     std::string excluded;
     const auto count = static_cast<std::uint32_t>(roles.size());
+    const auto has_surface = [&roles](std::uint32_t body) {
+        return roles[body].file != kNoFile || !roles[body].shapes.empty();
+    };
     for (std::uint32_t a = 0; a < count; ++a) {
         for (std::uint32_t b = a + 1; b < count; ++b) {
+            if (!has_surface(a) || !has_surface(b)) {
+                continue;
+            }
             const std::string reason =
                 proposed == nullptr ? reason_of(roles, a, b) : reason_in(*proposed, a, b);
             if (reason.empty()) {
@@ -352,7 +397,7 @@ std::string program_text(const IniAxes& ini, const std::vector<RoleGuess>& roles
         for (; i < settings.size() && settings[i].key == first.key; ++i) {
             const IniSetting& one = settings[i];
             const bool is_used = std::any_of(roles.begin(), roles.end(), [&](const RoleGuess& r) {
-                return r.axis == one.letter;
+                return r.axis == std::string(1, one.letter);
             });
             values +=
                 is_used ? fmt::format("{}{}: {}", values.empty() ? "" : ", ", one.letter, one.value)
@@ -391,9 +436,10 @@ std::string machine_file_text(const std::string& name, const std::vector<Surveye
                               const std::vector<ProposedExclusion>* exclusions) {
     const std::int64_t period_ns = ini.servo_period_ns.value_or(0);
     std::string text = fmt::format("{}name: {}\n", kHead + 1, quoted(name, 128));
-    text += axes_text(roles, ini.axes) + program_text(ini, roles) + kBodiesHead;
+    text += axes_text(roles, ini) + program_text(ini, roles) + kBodiesHead;
     for (const RoleGuess& role : roles) {
-        text += body_text(role, meshes[role.file], roles);
+        text +=
+            body_text(role, role.file == kNoFile ? nullptr : &meshes[role.file], roles, ini.axes);
     }
     text += tools_text(meshes, roles);
     text += pairs_text(roles, exclusions);

@@ -10,6 +10,8 @@
 #include <system_error>
 
 #include "config/init/machine_tree.hpp"
+#include "config/init/urdf.hpp"
+#include "config/init/urdf_model.hpp"
 #include "config/init/write_machine.hpp"
 #include "config/machine/parse_machine.hpp"
 #include "config/mesh/drawing_doubts.hpp"
@@ -33,8 +35,15 @@ namespace fs = std::filesystem;
 
 struct InitOptions {
     std::string source;  // a folder, or an INI file
-    std::string folder, tree, out, unit, pairs = "likely";
+    std::string folder, tree, urdf, out, unit, pairs = "likely";
     bool force = false;
+};
+
+/// The inputs of a machine file, before the meshes are read.
+struct MachineParts {
+    std::vector<UrdfMesh> meshes;
+    std::vector<RoleGuess> roles;
+    IniAxes axes;
 };
 
 constexpr std::array<LengthUnit, 4> kUnits{LengthUnit::mm, LengthUnit::inch, LengthUnit::m,
@@ -204,16 +213,16 @@ bool find_permanent(const std::string& text, const std::string& mesh_root,
 /// The file's text, which loads; empty after a message.
 /// @param mesh_root  the folder that the names of the meshes begin from
 std::string sound_text(const InitOptions& options, const std::string& mesh_root,
-                       const std::vector<SurveyedMesh>& meshes, const std::vector<RoleGuess>& roles,
-                       const IniAxes& known) {
+                       const std::vector<SurveyedMesh>& meshes, const MachineParts& parts) {
     const std::string name = escaped(fs::path(options.out).stem().string(), 100);
     std::vector<ProposedExclusion> permanent;
     const bool is_all = options.pairs == "all";
-    std::string text = machine_file_text(name, meshes, roles, known, is_all ? &permanent : nullptr);
+    const std::vector<ProposedExclusion>* const none = is_all ? &permanent : nullptr;
+    std::string text = machine_file_text(name, meshes, parts.roles, parts.axes, none);
     if (!is_sound(text, options) || (is_all && !find_permanent(text, mesh_root, permanent))) {
         return {};
     }
-    return is_all ? machine_file_text(name, meshes, roles, known, &permanent) : text;
+    return is_all ? machine_file_text(name, meshes, parts.roles, parts.axes, &permanent) : text;
 }
 
 /// The extents of each body in the unit that was passed, one a line, and the doubts about them.
@@ -221,6 +230,10 @@ void show_sizes(const std::vector<RoleGuess>& roles, const std::vector<SurveyedM
                 std::FILE* stream) {
     std::vector<BodySize> sizes;
     for (const RoleGuess& role : roles) {
+        if (role.file == kNoFile) {  // no size, no doubt
+            sizes.push_back({"", LengthUnit::mm, Vec3d{}, role.parent});
+            continue;
+        }
         const MeshSource& source = meshes[role.file].source;
         const Vec3d size = source.expected_size_mm;
         fmt::print(stream, "  {:<20} {:.5g} x {:.5g} x {:.5g} mm\n", role.name, size.x, size.y,
@@ -236,22 +249,32 @@ void show_sizes(const std::vector<RoleGuess>& roles, const std::vector<SurveyedM
     }
 }
 
-int init(InitOptions options, const CommandFiles& names) {
-    std::vector<std::string> files;
-    IniAxes known;
+/// Everything from a URDF file; false after a message.
+bool read_urdf_file(const InitOptions& options, MachineParts& out) {
+    std::string text;
+    const std::string shown = escaped(options.urdf, 4096);
+    if (const SmallFileFault fault = read_small_file(options.urdf, kUrdfBytesMax, text);
+        !fault.got.empty() || !fault.wanted.empty()) {
+        fmt::print(stderr, "{}: {}\n", shown, fault_text("invalid file", fault.got, fault.wanted));
+        return false;
+    }
+    const auto has_file = [&options](const std::string& name) {
+        std::error_code error;
+        return fs::is_regular_file(fs::path(options.folder) / name, error);
+    };
+    UrdfMachine machine = read_urdf(text, shown, has_file);
+    for (const ConfigFault& fault : machine.faults) {
+        fmt::print(stderr, "{}\n", to_string(fault));
+    }
+    out = {std::move(machine.meshes), std::move(machine.roles), std::move(machine.axes)};
+    return machine.faults.empty();
+}
+
+/// From the meshes of the folder and an INI file or a tree; another exit code after a message.
+int read_folder(const InitOptions& options, const CommandFiles& names, MachineParts& out) {
     const bool is_ini = has_extension(options.source, ".ini");
-    if (options.folder.empty()) {
-        const std::string beside = fs::path(options.source).parent_path().string();
-        options.folder = !is_ini ? options.source : beside.empty() ? "." : beside;
-    }
-    std::error_code error;
-    if (options.out != "-" && fs::exists(fs::symlink_status(options.out, error)) &&
-        !options.force) {
-        fmt::print(stderr, "{}: file exists. Overwrite it with --force.\n",
-                   escaped(options.out, 4096));
-        return kExitInput;
-    }
-    if ((is_ini && !read_ini(options.source, known)) || !list_meshes(options.folder, files)) {
+    std::vector<std::string> files;
+    if ((is_ini && !read_ini(options.source, out.axes)) || !list_meshes(options.folder, files)) {
         return kExitInput;
     }
     std::vector<std::string> inputs;
@@ -268,43 +291,104 @@ int init(InitOptions options, const CommandFiles& names) {
         show_units(options.folder, files);
         return kExitUsage;
     }
-    std::vector<RoleGuess> roles;
-    if (!find_roles(options, files, *unit, roles)) {
+    for (const std::string& file : files) {
+        out.meshes.push_back({file, *unit});
+    }
+    return find_roles(options, files, *unit, out.roles) ? kExitClean : kExitInput;
+}
+
+/// The folder of the meshes: as passed, else that of the file that names them.
+std::string folder_of(const InitOptions& options) {
+    if (!options.folder.empty()) {
+        return options.folder;
+    }
+    const bool is_folder = options.urdf.empty() && !has_extension(options.source, ".ini");
+    const std::string& file = options.urdf.empty() ? options.source : options.urdf;
+    const std::string beside = fs::path(file).parent_path().string();
+    return is_folder ? options.source : beside.empty() ? "." : beside;
+}
+
+/// Options that exclude each other; false after a message.
+bool are_consistent(const InitOptions& options) {
+    if (options.urdf.empty() == options.source.empty()) {
+        fmt::print(stderr, "init: {}\n",
+                   options.urdf.empty()
+                       ? "missing input. Pass the folder of the STL files, an INI file, or --urdf "
+                         "FILE."
+                       : "two inputs. Pass --urdf FILE without a folder or an INI file; the folder "
+                         "of its meshes with --meshes DIR.");
+        return false;
+    }
+    if (!options.urdf.empty() && (!options.unit.empty() || !options.tree.empty())) {
+        fmt::print(stderr, "--{}: conflicts with --urdf. Remove it: the URDF file states {}.\n",
+                   options.tree.empty() ? "unit" : "tree",
+                   options.tree.empty() ? "the scale of each mesh" : "the parents and axes");
+        return false;
+    }
+    return true;
+}
+
+/// Surveys each mesh, and names it as the machine file shall contain it; false after a message.
+bool survey(const MachineParts& parts, const std::string& folder, const std::string& way,
+            std::vector<SurveyedMesh>& out) {
+    bool is_sound = true;
+    for (const UrdfMesh& mesh : parts.meshes) {
+        out.push_back(survey_mesh(folder, mesh.file, mesh.unit));
+        for (const std::string& fault : out.back().faults) {
+            fmt::print(stderr, "{}\n", fault);
+            is_sound = false;
+        }
+        out.back().source.file = way.empty() || way == "." ? mesh.file : way + '/' + mesh.file;
+    }
+    if (!is_sound) {
+        fmt::print(stderr,
+                   "no file written. Repair these meshes, or move them out of the folder.\n");
+    }
+    return is_sound;
+}
+
+int init(InitOptions options, const CommandFiles& names) {
+    if (!are_consistent(options)) {
+        return kExitUsage;
+    }
+    options.folder = folder_of(options);
+    std::error_code error;
+    if (options.out != "-" && fs::exists(fs::symlink_status(options.out, error)) &&
+        !options.force) {
+        fmt::print(stderr, "{}: file exists. Overwrite it with --force.\n",
+                   escaped(options.out, 4096));
+        return kExitInput;
+    }
+    MachineParts parts;
+    if (options.urdf.empty()) {
+        if (const int code = read_folder(options, names, parts); code != kExitClean) {
+            return code;
+        }
+    } else if (!read_urdf_file(options, parts)) {
         return kExitInput;
     }
     const std::string folder_of_out = fs::path(options.out).parent_path().string();
     const std::string way = way_down(folder_of_out, options.folder);
-    const bool needs_root = way.empty();
     std::vector<SurveyedMesh> meshes;
-    bool sound = true;
-    for (const std::string& file : files) {
-        meshes.push_back(survey_mesh(options.folder, file, *unit));
-        for (const std::string& fault : meshes.back().faults) {
-            fmt::print(stderr, "{}\n", fault);
-            sound = false;
-        }
-        meshes.back().source.file = needs_root || way == "." ? file : way + '/' + file;
-    }
-    if (!sound) {
-        fmt::print(stderr,
-                   "no file written. Repair these meshes, or move them out of the folder.\n");
+    if (!survey(parts, options.folder, way, meshes)) {
         return kExitInput;
     }
     const std::string text =
-        sound_text(options, needs_root ? options.folder : folder_of_out, meshes, roles, known);
+        sound_text(options, way.empty() ? options.folder : folder_of_out, meshes, parts);
     if (text.empty()) {
         return kExitInput;
     }
     if (!write_whole_file(options.out, text, stderr)) {
         return kExitInternal;
     }
-    const std::string root = needs_root ? " --mesh-root " + options.folder : "";
+    const std::string root = way.empty() ? " --mesh-root " + options.folder : "";
     std::FILE* const stream = is_stdout(options.out) ? stderr : stdout;
-    show_sizes(roles, meshes, stream);
+    show_sizes(parts.roles, meshes, stream);
     fmt::print(
         stream,
         "{}: {} bodies written. Next: edit the lines marked GUESS, then\n  axguard check {}{}\n",
-        escaped(options.out, 4096), roles.size(), escaped(options.out, 4096), escaped(root, 4096));
+        escaped(options.out, 4096), parts.roles.size(), escaped(options.out, 4096),
+        escaped(root, 4096));
     return kExitClean;
 }
 
@@ -314,19 +398,20 @@ void add_init(CommandLine& line) {
     auto options = std::make_shared<InitOptions>();
     const Command command = line.add_command(
         "init",
-        "Write a commented machine file from STL files and, optionally, a LinuxCNC INI file");
+        "Write a commented machine file from STL files, a LinuxCNC INI file or a URDF file");
     command.set_group("Set up a machine");
     command.set_example("axguard init meshes -o machine.yaml --unit mm");
-    command
-        .add_input("DIR|MACHINE.ini", options->source,
-                   "folder with one STL file per rigid body, or a LinuxCNC INI file in that folder "
-                   "(source of travel, speeds and accelerations)")
-        .required();
+    command.add_input(
+        "DIR|MACHINE.ini", options->source,
+        "folder with one STL file per rigid body, or a LinuxCNC INI file in that folder "
+        "(source of travel, speeds and accelerations)");
     command.add_option("--meshes", options->folder,
-                       "folder of the STL files [default: folder of the INI file]");
+                       "folder of the STL files [default: folder of the INI or URDF file]");
     command.add_input(
         "--tree", options->tree,
         "machine.yml of a QtPyVCP screen (source of parents, axes, signs and pivots)");
+    command.add_input("--urdf", options->urdf,
+                      "URDF file (source of bodies, joints, travel and speeds)");
     command.add_output("-o,--out", options->out, "machine file to write").required();
     command
         .add_option(

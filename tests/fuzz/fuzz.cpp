@@ -29,6 +29,7 @@ constexpr std::array kTargets{
     Target{"machine_file", &axg::fuzz::machine_file},
     Target{"stl", &axg::fuzz::stl},
     Target{"tritri", &axg::fuzz::tritri},
+    Target{"urdf", &axg::fuzz::urdf},
     Target{"vector_asc", &axg::fuzz::vector_asc},
 };
 

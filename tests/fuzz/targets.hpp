@@ -19,6 +19,7 @@ namespace axg::fuzz {
 [[nodiscard]] int machine_file(const std::uint8_t* data, std::size_t size);
 [[nodiscard]] int stl(const std::uint8_t* data, std::size_t size);
 [[nodiscard]] int tritri(const std::uint8_t* data, std::size_t size);
+[[nodiscard]] int urdf(const std::uint8_t* data, std::size_t size);
 [[nodiscard]] int vector_asc(const std::uint8_t* data, std::size_t size);
 
 }  // namespace axg::fuzz

@@ -53,6 +53,7 @@ SYSTEM = re.compile(r"(linux|sys|net|netinet|arpa|asm|bits)/|"
                     r"(fcntl|unistd|pthread|sched|poll|dlfcn|signal|dirent|termios|ifaddrs)\.h$")
 LIBRARIES = {  # library -> the only folder that may know it (tests beside)
     "yaml-cpp/": {"config"},
+    "tinyxml2.h": {"config"},
     "cuda": {"cuda"},
     "gtest/": set(),
     "rapidcheck": set(),

@@ -17,7 +17,7 @@ std::string roles_of(const std::vector<std::string>& files) {
     for (std::uint32_t i = 0; i < files.size(); ++i) {
         for (const RoleGuess& role : roles) {
             if (role.file == i) {
-                out += role.is_tool ? 'T' : role.axis == '\0' ? '-' : role.axis;
+                out += role.is_tool ? "T" : role.axis.empty() ? "-" : role.axis;
             }
         }
     }

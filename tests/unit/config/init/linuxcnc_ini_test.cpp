@@ -65,7 +65,7 @@ TEST(LinuxcncIni, AxesHaveTheTighterLimitsInMmAndDegrees) {
     ASSERT_TRUE(ini.faults.empty()) << ini.faults[0];
     ASSERT_EQ(ini.axes.size(), 5U);
     const IniAxis& x = ini.axes[0];
-    EXPECT_EQ(x.letter, 'X');
+    EXPECT_EQ(x.name, "X");
     EXPECT_FALSE(x.is_rotary);
     EXPECT_DOUBLE_EQ(x.min.value(), -12.5 * 25.4);
     EXPECT_DOUBLE_EQ(x.max.value(), 12.0 * 25.4) << "the joint's is tighter";

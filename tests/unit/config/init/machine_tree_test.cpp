@@ -83,9 +83,9 @@ TEST(MachineTree, HasParentsAxesPlacesAndSides) {
     const RoleGuess &bed = tree.roles[0], &x = tree.roles[1], &plate = tree.roles[2],
                     &head = tree.roles[3];
     EXPECT_EQ(bed.parent, kNoParent);
-    EXPECT_EQ(bed.axis, '\0');
+    EXPECT_EQ(bed.axis, "");
     EXPECT_EQ(x.parent, 0U);
-    EXPECT_EQ(x.axis, 'X');
+    EXPECT_EQ(x.axis, "X");
     EXPECT_TRUE(x.is_table_side && plate.is_table_side);
     EXPECT_NEAR(x.at_mm.z, 76.2, 1e-12);
     EXPECT_EQ(plate.parent, 1U);
@@ -93,7 +93,7 @@ TEST(MachineTree, HasParentsAxesPlacesAndSides) {
     EXPECT_NEAR(plate.pivot_mm.z, -457.2, 1e-12);
     EXPECT_EQ(plate.pivot_doubt, "");
     EXPECT_EQ(plate.file, 2U);
-    EXPECT_EQ(head.axis, 'Z');
+    EXPECT_EQ(head.axis, "Z");
     EXPECT_FALSE(head.is_table_side || head.parent != 0U);
 }
 
@@ -260,17 +260,17 @@ TEST(MachineTree, OfARealMachineIsTheFileThatWasWrittenByHand) {
             EXPECT_EQ(tree.roles[role.parent].name, machine.bodies[body->parent].name);
         }
         const Joint& joint = body->joint;
-        EXPECT_EQ(role.axis == '\0', joint.axis == kNoIndex) << role.name;
+        EXPECT_EQ(role.axis.empty(), joint.axis == kNoIndex) << role.name;
         EXPECT_EQ(role.at_mm, (Vec3d{body->at.t[0], body->at.t[1], body->at.t[2]})) << role.name;
         if (joint.axis != kNoIndex) {
-            EXPECT_EQ(std::string(1, role.axis), machine.axes[joint.axis].name);
+            EXPECT_EQ(role.axis, machine.axes[joint.axis].name);
             const Vec3d way = joint.direction;
             EXPECT_EQ(role.is_table_side, way.x + way.y + way.z < 0) << role.name;
             // The file has no minus, and the table moves against its command: a doubt says so.
             EXPECT_EQ(role.way_doubt.empty(), !role.is_table_side) << role.name;
             EXPECT_EQ(role.pivot_doubt, "") << role.name;
         }
-        if (role.axis == 'A' || role.axis == 'C') {
+        if (role.axis == "A" || role.axis == "C") {
             EXPECT_EQ(role.pivot_mm, joint.pivot_mm) << role.name;
         }
     }

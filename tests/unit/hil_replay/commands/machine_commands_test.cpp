@@ -178,6 +178,39 @@ TEST_F(Commands, InitTakesTheAxesOfAnIniFile) {
         << bad.err;
 }
 
+TEST_F(Commands, InitReadsAUrdfFile) {
+    write_mesh("base.stl");
+    std::ofstream(path("m.urdf"))
+        << "<robot><link name='base'><visual><geometry>\n"
+           "<mesh filename='package://m/base.stl' scale='.0254 .0254 "
+           ".0254'/></geometry></visual></link>"
+           "<link name='table'><visual><origin xyz='0 0 .5'/><geometry><box size='.1 .1 .02'/>"
+           "</geometry></visual></link><joint name='x_joint' type='prismatic'>"
+           "<parent link='base'/><child link='table'/><limit lower='-.1' upper='.1'/></joint>"
+           "</robot>";
+    const std::vector<std::string> words{"init", "--urdf", path("m.urdf"), "-o", path("m.yaml")};
+    const Outcome elsewhere = axguard(words);
+    EXPECT_EQ(elsewhere.exit_code, kExitInput);
+    EXPECT_TRUE(has(elsewhere.err, "m.urdf:2: link base.mesh.filename: ")) << elsewhere.err;
+    EXPECT_TRUE(has(elsewhere.err, "Pass it with --meshes DIR.")) << elsewhere.err;
+    auto with = [&words](std::vector<std::string> more) {
+        more.insert(more.begin(), words.begin(), words.end());
+        return axguard(more);
+    };
+    const Outcome init = with({"--meshes", path("meshes")});
+    EXPECT_EQ(init.exit_code, kExitClean) << init.err;
+    Machine machine;
+    const auto faults = load_machine(path("m.yaml"), machine);
+    ASSERT_TRUE(faults.empty()) << to_string(faults[0]);
+    ASSERT_EQ(machine.bodies.size(), 2U);
+    EXPECT_EQ(machine.bodies[1].mesh.shapes.at(0).at.t[2], 490) << "a box begins at its bottom";
+    EXPECT_EQ(machine.axes.at(0).max, 100);
+    EXPECT_EQ(axguard({"check", path("m.yaml")}).exit_code, kExitClean);
+    EXPECT_EQ(with({"--unit", "mm"}).exit_code, kExitUsage);
+    EXPECT_EQ(with({path("meshes")}).exit_code, kExitUsage);
+    EXPECT_EQ(axguard({"init", "-o", path("n.yaml")}).exit_code, kExitUsage);
+}
+
 // A tool drawn standing on its tip would stick into the spindle.
 TEST_F(Commands, InitPlacesAToolBelowTheSpindle) {
     for (const auto& [low_mm, high_mm, words] :
