@@ -140,6 +140,18 @@ std::uint32_t carrier_of(char role, const std::vector<RoleGuess>& placed) {
 
 }  // namespace
 
+void add_tool_body(std::vector<RoleGuess>& roles) {
+    if (std::any_of(roles.begin(), roles.end(), [](const RoleGuess& one) { return one.is_tool; })) {
+        return;
+    }
+    RoleGuess tool;
+    tool.name = legal_name("tool", roles);
+    tool.parent = carrier_of('T', roles);
+    tool.is_tool = true;
+    tool.file = kNoFile;
+    roles.push_back(std::move(tool));
+}
+
 char axis_in(std::string_view name) {
     const Names words = words_of(name);
     const auto found = std::find_if(words.begin(), words.end(), [](const std::string& word) {

@@ -39,6 +39,10 @@ struct RoleGuess {
 /// the tool. If no name contains an axis, the first file moves along X: a machine needs one axis.
 [[nodiscard]] std::vector<RoleGuess> guess_roles(const std::vector<std::string>& files);
 
+/// Adds a tool body, as a guess on the last moved body that does not carry the workpiece; nothing
+/// if there is one.
+void add_tool_body(std::vector<RoleGuess>& roles);
+
 /// The first axis X to C that is a word of a name, in capitals: 'X' for "x_joint"; '\0': none.
 [[nodiscard]] char axis_in(std::string_view name);
 

@@ -165,6 +165,7 @@ class Reader {
             }
         }
         read_program();
+        read_tools();
         return std::move(out_);
     }
 
@@ -354,6 +355,22 @@ class Reader {
             doubt(source_of(*remap, kSection, "REMAP") + ": simulate reads the word itself");
         }
         read_stored_positions();
+    }
+
+    /// A table that cannot be read is the table's fault, not the INI's.
+    void read_tools() {
+        const Value* const value = find("EMCIO", "TOOL_TABLE");
+        if (value == nullptr) {
+            return;
+        }
+        const std::string name(without_comment(value->text));
+        const NamedFile file = files_(name, kToolTableBytesMax);
+        if (file.got.empty()) {
+            out_.tools = read_tool_table(file.text, escaped(name, 400), linear_);
+        } else {
+            out_.tools.faults.push_back(source_of(*value, "EMCIO", "TOOL_TABLE") +
+                                        ": cannot be read: no tool is taken from it");
+        }
     }
 
     /// Parameters 5161 to 5169 and 5181 to 5189 of the file of parameters, in the machine's units.

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "config/init/tool_table.hpp"
 #include "config/text/named_file.hpp"
 
 namespace axg {
@@ -39,11 +40,12 @@ struct IniAxes {
     bool exceeds_limits = true;                   // as LinuxCNC does where moves blend
     std::vector<IniSetting> program{};            // keys together
     std::vector<std::string> program_doubts{};    // what decides a program and is in no key
+    ToolTable tools{};                            // [EMCIO] TOOL_TABLE
     std::vector<std::string> faults;              // "machine.ini:12: [AXIS_X] MAX_LIMIT: ..."
 };
 
 /// @param name      of the file, for messages
-/// @param includes  reads what #INCLUDE and [RS274NGC] PARAMETER_FILE name
+/// @param includes  reads what #INCLUDE, PARAMETER_FILE and TOOL_TABLE name
 [[nodiscard]] IniAxes read_linuxcnc_ini(std::string_view text, const std::string& name,
                                         const NamedFiles& includes);
 

@@ -12,6 +12,8 @@
 namespace axg {
 namespace {
 
+constexpr double kThinMm = 0.001;  // a thinner tool is one without a diameter
+constexpr std::uint32_t kToolNumberMax = 65535;
 constexpr std::string_view kAxisOrder = "XYZABCUVW";
 
 // Each starts with a blank line.
@@ -221,6 +223,11 @@ std::string axes_text(const std::vector<RoleGuess>& roles, const IniAxes& ini) {
     return text;
 }
 
+bool has_tools(const std::vector<RoleGuess>& roles) {
+    return std::any_of(roles.begin(), roles.end(),
+                       [](const RoleGuess& role) { return role.is_tool; });
+}
+
 /// Behind a value; of one that is stated, nothing unless there is a doubt about it.
 std::string guess_of(const RoleGuess& role, const std::string& why, const std::string& doubt = {}) {
     const std::string& reason = role.is_stated ? doubt : why;
@@ -229,7 +236,7 @@ std::string guess_of(const RoleGuess& role, const std::string& why, const std::s
 
 std::string joint_text(const RoleGuess& role, const Vec3d& middle, bool is_turning) {
     if (role.axis.empty()) {
-        return role.is_stated
+        return role.is_stated || role.is_tool
                    ? ""
                    : fmt::format("    {}: fixed to {}; if it moves, add axis and direction\n",
                                  kGuessMark,
@@ -264,7 +271,10 @@ std::string body_text(const RoleGuess& role, const SurveyedMesh* mesh,
     const Vec3d middle = mesh == nullptr ? Vec3d{} : 0.5 * (mesh->min_mm + mesh->max_mm);
     text += joint_text(role, middle, is_rotary(role.axis, known));
     if (role.is_tool) {
-        return text + fmt::format("    tool: true  {}: from the name of the file\n", kGuessMark);
+        return text +
+               (mesh == nullptr
+                    ? "    tool: true\n"
+                    : fmt::format("    tool: true  {}: from the name of the file\n", kGuessMark));
     }
     if (mesh == nullptr && role.shapes.empty()) {
         return text;
@@ -284,15 +294,33 @@ std::string body_text(const RoleGuess& role, const SurveyedMesh* mesh,
            (mesh == nullptr ? fmt::format("{{shapes: [{}]}}", role.shapes) : mesh_of(*mesh)) + '\n';
 }
 
-std::string tools_text(const std::vector<SurveyedMesh>& meshes,
-                       const std::vector<RoleGuess>& roles) {
+/// A tool of the control's table: a cylinder, without the shank and holder that it does not state.
+std::string table_tool_text(const TableTool& tool) {
+    if (!is_measured(tool)) {
+        return fmt::format("  # {}: tool {} has no length: measure it\n", tool.source, tool.number);
+    }
+    const double radius_mm = tool.diameter_mm.value_or(0) / 2;
+    const double drawn_mm = radius_mm > kThinMm ? radius_mm : 5;
+    std::string text = fmt::format("  - number: {}  # {}\n", tool.number, tool.source);
+    text += tool.comment.empty() ? "" : fmt::format("    name: {}\n", quoted(tool.comment, 100));
+    return text + fmt::format(
+                      "    length_mm: {0:.9g}  {2}: if the table counts from the spindle nose\n"
+                      "    profile_mm: [[0, -{0:.9g}], [{1:.9g}, -{0:.9g}], [{1:.9g}, 0], [0, 0]]  "
+                      "{2}: {3}add shank and holder\n",
+                      tool.length_mm, drawn_mm, kGuessMark,
+                      drawn_mm == radius_mm ? "" : "the table states no diameter; ");
+}
+
+std::string tools_text(const std::vector<SurveyedMesh>& meshes, const std::vector<RoleGuess>& roles,
+                       const ToolTable& table) {
     std::string text;
+    bool is_drawn = false;  // a file is tool 1
     for (const RoleGuess& role : roles) {
-        if (!role.is_tool) {
+        if (!role.is_tool || role.file == kNoFile) {
             continue;
         }
+        is_drawn = true;
         const SurveyedMesh& mesh = meshes[role.file];
-        text += kToolsHead;
         for (const std::string& note : mesh.notes) {
             text += "  # Repair the mesh or accept: " + escaped(note, 400) + '\n';
         }
@@ -305,7 +333,22 @@ std::string tools_text(const std::vector<SurveyedMesh>& meshes,
             "    at_mm: [0, 0, {:.6g}]  {}: where it sits at the zero pose\n    mesh: {}\n",
             0 - top_mm, kGuessMark, mesh_of(mesh));
     }
-    return text.empty() ? kNoTools : text;
+    for (const std::string& fault : table.faults) {
+        text += "  # " + fault + '\n';
+    }
+    std::size_t count = is_drawn ? 1 : 0;
+    for (const TableTool& tool : table.tools) {
+        if (is_drawn && tool.number == 1) {
+            text +=
+                fmt::format("  # {}: tool 1 has length {:.9g} mm\n", tool.source, tool.length_mm);
+        } else if (tool.number <= kToolNumberMax && ++count <= kToolsMax) {
+            text += table_tool_text(tool);
+        } else {
+            text += fmt::format("  # {}: tool {} is left out: at most {} tools, up to {}\n",
+                                tool.source, tool.number, kToolsMax, kToolNumberMax);
+        }
+    }
+    return has_tools(roles) ? kToolsHead + text : kNoTools + text;
 }
 
 /// The nearest body up the chain, itself included, that an axis moves; kNoParent: the frame carries
@@ -346,7 +389,7 @@ std::string pairs_text(const std::vector<RoleGuess>& roles,
     std::string excluded;
     const auto count = static_cast<std::uint32_t>(roles.size());
     const auto has_surface = [&roles](std::uint32_t body) {
-        return roles[body].file != kNoFile || !roles[body].shapes.empty();
+        return roles[body].file != kNoFile || !roles[body].shapes.empty() || roles[body].is_tool;
     };
     for (std::uint32_t a = 0; a < count; ++a) {
         for (std::uint32_t b = a + 1; b < count; ++b) {
@@ -369,10 +412,8 @@ std::string pairs_text(const std::vector<RoleGuess>& roles,
         excluded.erase(0, end);
         checked = fmt::format("  - {{a: {}, b: {}, margin_mm: 0}}\n", roles[0].name, roles[1].name);
     }
-    const bool has_tool =
-        std::any_of(roles.begin(), roles.end(), [](const RoleGuess& role) { return role.is_tool; });
     std::string text = kPairsHead;
-    text += has_tool ? "" : kNoToolPairs;
+    text += has_tools(roles) ? "" : kNoToolPairs;
     text += "pairs:\n" + checked;
     if (!excluded.empty()) {
         text += kExclusionsHead + excluded;
@@ -385,7 +426,7 @@ std::string program_text(const IniAxes& ini, const std::vector<RoleGuess>& roles
     const std::vector<IniSetting>& settings = ini.program;
     std::string doubts, text;
     for (const std::string& doubt : ini.program_doubts) {
-        doubts += fmt::format("# {}: {}\n", kGuessMark, doubt);
+        doubts += fmt::format("{}: {}\n", kGuessMark, doubt);
     }
     for (std::size_t i = 0; i < settings.size(); ++i) {
         const IniSetting& first = settings[i];
@@ -441,7 +482,7 @@ std::string machine_file_text(const std::string& name, const std::vector<Surveye
         text +=
             body_text(role, role.file == kNoFile ? nullptr : &meshes[role.file], roles, ini.axes);
     }
-    text += tools_text(meshes, roles);
+    text += tools_text(meshes, roles, ini.tools);
     text += pairs_text(roles, exclusions);
     text += fmt::format(
         "\n# What the board guarantees in a stop. jerk_limited: jerk stays limited, and an axis "

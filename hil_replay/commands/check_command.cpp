@@ -7,9 +7,13 @@
 #include <optional>
 #include <vector>
 
+#include "config/init/tool_table.hpp"
 #include "config/machine/effective_text.hpp"
 #include "config/machine/effective_yaml.hpp"
+#include "config/machine/program_settings.hpp"
+#include "config/text/fault_text.hpp"
 #include "config/text/quote_text.hpp"
+#include "config/text/small_file.hpp"
 #include "core/base/sincos.hpp"
 #include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
@@ -34,6 +38,7 @@ struct CheckOptions {
     bool has_plan = false, is_effective = false;
     std::string report;   // the page's file; empty: none
     std::string plan_of;  // a stored admission; empty: none
+    std::string tool_table;
     ModelChoiceOptions plan;
     JsonOutput json;
 };
@@ -77,10 +82,37 @@ int write_report(const CheckOptions& options, const LoadedMachine& loaded) {
     return write_run_page(options.report, run, stderr) ? kExitClean : kExitInternal;
 }
 
+/// Lines about what differs from LinuxCNC's tool table, in the unit in which its programs start;
+/// false after a message.
+bool compare_tools(const std::string& file, const LoadedMachine& loaded,
+                   std::vector<std::string>& out) {
+    std::string text;
+    const std::string shown = escaped(file, 4096);
+    if (const SmallFileFault fault = read_small_file(file, kToolTableBytesMax, text);
+        !fault.got.empty() || !fault.wanted.empty()) {
+        fmt::print(stderr, "{}: {}\n", shown, fault_text("invalid file", fault.got, fault.wanted));
+        return false;
+    }
+    const std::optional<bool> is_inch =
+        program_settings(loaded.source, loaded.machine).starts_in_inch;
+    const ToolTable table = read_tool_table(text, shown, is_inch.value_or(false) ? 25.4 : 1);
+    out = tool_differences(table, shown, loaded.machine);
+    if (!out.empty() && !is_inch) {
+        out.push_back(shown +
+                      ": read in mm. If the control counts in inch, state program: {start_unit: "
+                      "inch}.");
+    }
+    return true;
+}
+
 int check(const CheckOptions& options) {
     LoadedMachine loaded;
     if (const int code = load(options.machine, loaded); code != kExitClean) {
         return code;
+    }
+    std::vector<std::string> differences;
+    if (!options.tool_table.empty() && !compare_tools(options.tool_table, loaded, differences)) {
+        return kExitInput;
     }
     if (options.is_effective) {
         return print_effective(loaded);
@@ -112,6 +144,7 @@ int check(const CheckOptions& options) {
     report_frames(report);
     report_bodies(report);
     report_tools(report);
+    report.warnings.insert(report.warnings.end(), differences.begin(), differences.end());
     report_pairs(report);
     report_guard(report);
     report_engine(report);
@@ -170,6 +203,8 @@ void add_check(CommandLine& line) {
     command.add_input("--plan-of", options->plan_of,
                       "compare the plan of the machine file with that of this verdict, which "
                       "axguardd admit or run stored on the guard's computer");
+    command.add_input("--tool-table", options->tool_table,
+                      "LinuxCNC tool table: list its differences from the machine's tools");
     command.add_flag("--effective", options->is_effective,
                      "print only the effective machine file: every key with its value");
     command.add_output("--report", options->report,

@@ -367,6 +367,10 @@ int init(InitOptions options, const CommandFiles& names) {
     } else if (!read_urdf_file(options, parts)) {
         return kExitInput;
     }
+    const std::vector<TableTool>& tools = parts.axes.tools.tools;
+    if (std::any_of(tools.begin(), tools.end(), is_measured)) {
+        add_tool_body(parts.roles);
+    }
     const std::string folder_of_out = fs::path(options.out).parent_path().string();
     const std::string way = way_down(folder_of_out, options.folder);
     std::vector<SurveyedMesh> meshes;

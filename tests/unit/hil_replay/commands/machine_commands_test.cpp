@@ -178,6 +178,31 @@ TEST_F(Commands, InitTakesTheAxesOfAnIniFile) {
         << bad.err;
 }
 
+TEST_F(Commands, ToolsOfTheTableAreWrittenAndCompared) {
+    for (const char* name : {"table.stl", "head.stl"}) {
+        write_mesh(name);
+    }
+    std::ofstream(path("meshes/mill.ini")) << "[TRAJ]\nCOORDINATES = XZ\nLINEAR_UNITS = inch\n"
+                                              "[EMCIO]\nTOOL_TABLE = mill.tbl\n";
+    std::ofstream(path("meshes/mill.tbl")) << "T3 Z2 D.5 ; mill\nT4 Z0\n";
+    const Outcome init =
+        axguard({"init", path("meshes/mill.ini"), "-o", path("m.yaml"), "--unit", "inch"});
+    EXPECT_EQ(init.exit_code, kExitClean) << init.err;
+    const auto check = [this](const std::string& table) {
+        std::ofstream(path("t.tbl")) << table;
+        return axguard({"check", path("m.yaml"), "--tool-table", path("t.tbl")});
+    };
+    EXPECT_EQ(check("T3 Z2 D.5").exit_code, kExitClean);
+    EXPECT_FALSE(has(check("T3 Z2 D.5").out, "t.tbl")) << "start_unit of the INI is inch";
+    const Outcome differs = check("T3 Z2.1\n");
+    EXPECT_EQ(differs.exit_code, kExitClean) << "listed, not judged";
+    EXPECT_TRUE(has(differs.out, "t.tbl:1: tool 3: length 53.34 mm, and 50.8 mm in "))
+        << differs.out;
+    fs::remove(path("t.tbl"));
+    EXPECT_EQ(axguard({"check", path("m.yaml"), "--tool-table", path("t.tbl")}).exit_code,
+              kExitInput);
+}
+
 TEST_F(Commands, InitReadsAUrdfFile) {
     write_mesh("base.stl");
     std::ofstream(path("m.urdf"))
