@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 #include <string_view>
+#include <utility>
 
 #include "config/text/map_reader.hpp"
 
@@ -26,6 +27,17 @@ constexpr std::array<Word, 34> kWords{
      {"spindle", 'Z'},   {"ram", 'Z'},    {"quill", 'Z'},   {"trunnion", 'A'},  {"cradle", 'A'},
      {"swivel", 'B'},    {"rotary", 'C'}, {"platter", 'C'}, {"plate", 'C'},     {"turntable", 'C'},
      {"faceplate", 'C'}, {"chuck", 'C'},  {"slide", 'X'},   {"ways", 'F'}}};
+
+// German puts the part at the end: a Spindelkopf is a Kopf. Longer words first, for a Drehtisch is
+// no mere Tisch. Umlauts are spelt out before.
+constexpr std::array<Word, 28> kEndings{
+    {{"drehtisch", 'C'}, {"rundtisch", 'C'},   {"drehteller", 'C'},   {"planscheibe", 'C'},
+     {"futter", 'C'},    {"schwenkkopf", 'B'}, {"schwenktisch", 'A'}, {"schwenk", 'A'},
+     {"wippe", 'A'},     {"wiege", 'A'},       {"kreuztisch", 'Y'},   {"kreuzschlitten", 'Y'},
+     {"werkzeug", 'T'},  {"fraeser", 'T'},     {"bohrer", 'T'},       {"tisch", 'X'},
+     {"schlitten", 'X'}, {"kopf", 'Z'},        {"spindel", 'Z'},      {"pinole", 'Z'},
+     {"bett", 'F'},      {"gestell", 'F'},     {"rahmen", 'F'},       {"staender", 'F'},
+     {"saeule", 'F'},    {"grundplatte", 'F'}, {"verkleidung", 'F'},  {"haube", 'F'}}};
 
 bool is_letter(char c) noexcept {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
@@ -78,7 +90,34 @@ char role_of(const Names& words) {
             return known.role;
         }
     }
+    for (const Word& known : kEndings) {
+        if (std::any_of(words.begin(), words.end(),
+                        [&known](const std::string& word) { return word.ends_with(known.text); })) {
+            return known.role;
+        }
+    }
     return '\0';
+}
+
+/// The German letters of UTF-8 as two of ASCII; other bytes stay.
+std::string spelt_out(std::string_view text) {
+    constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kLetters{
+        {{"\xc3\xa4", "ae"},
+         {"\xc3\xb6", "oe"},
+         {"\xc3\xbc", "ue"},
+         {"\xc3\x9f", "ss"},
+         {"\xc3\x84", "Ae"},
+         {"\xc3\x96", "Oe"},
+         {"\xc3\x9c", "Ue"}}};
+    std::string out;
+    while (!text.empty()) {
+        const auto found = std::find_if(kLetters.begin(), kLetters.end(), [&text](const auto& one) {
+            return text.starts_with(one.first);
+        });
+        out += found == kLetters.end() ? text.substr(0, 1) : found->second;
+        text.remove_prefix(found == kLetters.end() ? 1 : found->first.size());
+    }
+    return out;
 }
 
 /// Without a last (or first) word that most files share, if the rest tells them apart: in
@@ -108,7 +147,7 @@ void drop_shared_word(std::vector<Names>& files, bool is_last) {
 std::vector<char> roles_of(const std::vector<std::string>& files) {
     std::vector<Names> names;
     for (const std::string& file : files) {
-        names.push_back(words_of(stem_of(file)));
+        names.push_back(words_of(spelt_out(stem_of(file))));
     }
     drop_shared_word(names, true);
     drop_shared_word(names, false);
@@ -182,6 +221,30 @@ std::string legal_name(const std::string& stem, const std::vector<RoleGuess>& ot
     return unique;
 }
 
+void ride_in_boxes(std::vector<RoleGuess>& roles, const std::vector<Box>& boxes) {
+    const auto volume_of = [&](std::uint32_t body) {
+        const Box& box = boxes[roles[body].file];
+        const Vec3d size = box.max_mm - box.min_mm;
+        return size.x * size.y * size.z;
+    };
+    const auto contains = [&](std::uint32_t carrier, std::uint32_t body) {
+        const Box &outer = boxes[roles[carrier].file], &inner = boxes[roles[body].file];
+        return outer.min_mm.x <= inner.min_mm.x && inner.max_mm.x <= outer.max_mm.x &&
+               outer.min_mm.y <= inner.min_mm.y && inner.max_mm.y <= outer.max_mm.y &&
+               outer.min_mm.z <= inner.min_mm.z && inner.max_mm.z <= outer.max_mm.z &&
+               volume_of(body) < volume_of(carrier);
+    };
+    for (std::uint32_t i = 0; i < roles.size(); ++i) {
+        std::uint32_t& carrier = roles[i].parent;
+        for (std::uint32_t k = 0; roles[i].is_unnamed && k < i; ++k) {
+            if (!roles[k].is_unnamed && !roles[k].is_tool && contains(k, i) &&
+                (carrier == kNoParent || volume_of(k) < volume_of(carrier))) {
+                carrier = k;
+            }
+        }
+    }
+}
+
 std::vector<RoleGuess> guess_roles(const std::vector<std::string>& files) {
     struct Candidate {
         std::uint32_t file;
@@ -193,7 +256,7 @@ std::vector<RoleGuess> guess_roles(const std::vector<std::string>& files) {
     bool moves = false;
     const std::vector<char> roles = roles_of(files);
     for (std::uint32_t i = 0; i < files.size(); ++i) {
-        const std::string stem = stem_of(files[i]);
+        const std::string stem = spelt_out(stem_of(files[i]));
         char role = roles[i];
         role = role == 'T' && has_tool ? '\0' : role;  // one tool body at most
         has_tool |= role == 'T';
@@ -224,6 +287,8 @@ std::vector<RoleGuess> guess_roles(const std::vector<std::string>& files) {
             guess.parent = carrier_of(one.role, out);
             guess.axis = is_axis ? std::string(1, one.role) : "";
             guess.is_table_side = is_axis && one.role != 'Z';
+        } else {
+            guess.is_unnamed = one.role == '\0';
         }
         out.push_back(std::move(guess));
     }

@@ -19,6 +19,7 @@ struct RoleGuess {
     std::string name;  // of the body: the file's name made a legal and unique one
     std::string axis;  // "X"; empty: does not move by itself
     bool is_tool = false;
+    bool is_unnamed = false;           // its name contains no known word
     bool is_table_side = false;        // carries the workpiece: commanded motion runs the other way
     std::uint32_t parent = kNoParent;  // index in the result
     std::uint32_t file = 0;            // index of the file, or kNoFile
@@ -38,6 +39,16 @@ struct RoleGuess {
 /// One guess a file, parents first. Table side: Y carries X carries A, B, C. Head side: Z carries
 /// the tool. If no name contains an axis, the first file moves along X: a machine needs one axis.
 [[nodiscard]] std::vector<RoleGuess> guess_roles(const std::vector<std::string>& files);
+
+/// Extents of a mesh, mm.
+struct Box {
+    Vec3d min_mm{}, max_mm{};
+};
+
+/// Lets each body without a known name ride on the smallest named one whose box contains its own: a
+/// motor in the headstock moves with it.
+/// @param boxes  [files]
+void ride_in_boxes(std::vector<RoleGuess>& roles, const std::vector<Box>& boxes);
 
 /// Adds a tool body, as a guess on the last moved body that does not carry the workpiece; nothing
 /// if there is one.

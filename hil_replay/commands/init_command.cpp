@@ -377,6 +377,13 @@ int init(InitOptions options, const CommandFiles& names) {
     if (!survey(parts, options.folder, way, meshes)) {
         return kExitInput;
     }
+    if (options.urdf.empty()) {
+        std::vector<Box> boxes;
+        for (const SurveyedMesh& mesh : meshes) {
+            boxes.push_back({mesh.min_mm, mesh.max_mm});
+        }
+        ride_in_boxes(parts.roles, boxes);
+    }
     const std::string text =
         sound_text(options, way.empty() ? options.folder : folder_of_out, meshes, parts);
     if (text.empty()) {

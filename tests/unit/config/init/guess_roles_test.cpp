@@ -43,5 +43,42 @@ TEST(GuessRoles, AWordThatMostFilesShareNamesTheMachine) {
         << "half of them are no majority";
 }
 
+TEST(GuessRoles, GermanNamesPutThePartAtTheEnd) {
+    EXPECT_EQ(roles_of({"Maschinenbett.stl", "Kreuztisch.stl", "Fr\xc3\xa4stisch.stl",
+                        "Schwenkwippe.stl", "Drehtisch.stl", "Spindelkopf.stl"}),
+              "-YXACZ");
+    EXPECT_EQ(
+        roles_of({"St\xc3\xa4nder.stl", "YSchlitten.stl", "X-Schlitten.stl", "Fr\xc3\xa4ser.stl"}),
+        "-YXT")
+        << "a letter is plainer";
+    EXPECT_EQ(guess_roles({"St\xc3\xa4nder.stl", "x.stl"})[0].name, "Staender");
+    EXPECT_EQ(roles_of({"kopfplatte.stl", "x.stl"}), "-X") << "a plate, not a head";
+}
+
+// Whole inside, the smallest of several, and never on the tool or on another guess.
+TEST(GuessRoles, ABodyWithoutAKnownNameRidesOnWhatEnclosesIt) {
+    const std::vector<std::string> files{"bed.stl", "head.stl", "lamp.stl", "motor.stl",
+                                         "pump.stl"};
+    const std::vector<Box> boxes{{{0, 0, 0}, {100, 100, 100}},
+                                 {{10, 10, 50}, {30, 30, 90}},
+                                 {{10, 10, 80}, {20, 20, 91}},
+                                 {{10, 10, 60}, {20, 20, 90}},
+                                 {{90, 90, 90}, {110, 110, 110}}};
+    std::vector<RoleGuess> roles = guess_roles(files);
+    ride_in_boxes(roles, boxes);
+    const auto parent_of = [&roles](const std::string& name) {
+        for (const RoleGuess& role : roles) {
+            if (role.name == name) {
+                return role.parent == kNoParent ? std::string("-") : roles[role.parent].name;
+            }
+        }
+        return std::string("?");
+    };
+    EXPECT_EQ(parent_of("motor"), "head");
+    EXPECT_EQ(parent_of("lamp"), "bed") << "1 mm above the head";
+    EXPECT_EQ(parent_of("pump"), "-");
+    EXPECT_EQ(parent_of("head"), "-");
+}
+
 }  // namespace
 }  // namespace axg
