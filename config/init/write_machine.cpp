@@ -297,7 +297,8 @@ std::string body_text(const RoleGuess& role, const SurveyedMesh* mesh,
 /// A tool of the control's table: a cylinder, without the shank and holder that it does not state.
 std::string table_tool_text(const TableTool& tool) {
     if (!is_measured(tool)) {
-        return fmt::format("  # {}: tool {} has no length: measure it\n", tool.source, tool.number);
+        return fmt::format("  # {}: tool {} has no length above 0: measure it\n", tool.source,
+                           tool.number);
     }
     const double radius_mm = tool.diameter_mm.value_or(0) / 2;
     const double drawn_mm = radius_mm > kThinMm ? radius_mm : 5;

@@ -249,14 +249,14 @@ void show_sizes(const std::vector<RoleGuess>& roles, const std::vector<SurveyedM
     }
 }
 
-/// Everything from a URDF file; false after a message.
-bool read_urdf_file(const InitOptions& options, MachineParts& out) {
+/// Everything from a URDF file; another exit code after a message.
+int read_urdf_file(const InitOptions& options, const CommandFiles& names, MachineParts& out) {
     std::string text;
     const std::string shown = escaped(options.urdf, 4096);
     if (const SmallFileFault fault = read_small_file(options.urdf, kUrdfBytesMax, text);
         !fault.got.empty() || !fault.wanted.empty()) {
         fmt::print(stderr, "{}: {}\n", shown, fault_text("invalid file", fault.got, fault.wanted));
-        return false;
+        return kExitInput;
     }
     const auto has_file = [&options](const std::string& name) {
         std::error_code error;
@@ -266,8 +266,15 @@ bool read_urdf_file(const InitOptions& options, MachineParts& out) {
     for (const ConfigFault& fault : machine.faults) {
         fmt::print(stderr, "{}\n", to_string(fault));
     }
+    if (!machine.faults.empty()) {
+        return kExitInput;
+    }
     out = {std::move(machine.meshes), std::move(machine.roles), std::move(machine.axes)};
-    return machine.faults.empty();
+    std::vector<std::string> inputs;
+    for (const UrdfMesh& mesh : out.meshes) {
+        inputs.push_back((fs::path(options.folder) / mesh.file).string());
+    }
+    return are_apart(names, inputs, stderr) ? kExitClean : kExitUsage;
 }
 
 /// From the meshes of the folder and an INI file or a tree; another exit code after a message.
@@ -329,11 +336,11 @@ bool are_consistent(const InitOptions& options) {
 }
 
 /// Surveys each mesh, and names it as the machine file shall contain it; false after a message.
-bool survey(const MachineParts& parts, const std::string& folder, const std::string& way,
+bool survey(const MachineParts& parts, const InitOptions& options, const std::string& way,
             std::vector<SurveyedMesh>& out) {
     bool is_sound = true;
     for (const UrdfMesh& mesh : parts.meshes) {
-        out.push_back(survey_mesh(folder, mesh.file, mesh.unit));
+        out.push_back(survey_mesh(options.folder, mesh.file, mesh.unit));
         for (const std::string& fault : out.back().faults) {
             fmt::print(stderr, "{}\n", fault);
             is_sound = false;
@@ -341,8 +348,9 @@ bool survey(const MachineParts& parts, const std::string& folder, const std::str
         out.back().source.file = way.empty() || way == "." ? mesh.file : way + '/' + mesh.file;
     }
     if (!is_sound) {
-        fmt::print(stderr,
-                   "no file written. Repair these meshes, or move them out of the folder.\n");
+        fmt::print(stderr, "no file written. Repair these meshes, or {}.\n",
+                   options.urdf.empty() ? "move them out of the folder"
+                                        : "remove the elements of the URDF file that name them");
     }
     return is_sound;
 }
@@ -360,12 +368,10 @@ int init(InitOptions options, const CommandFiles& names) {
         return kExitInput;
     }
     MachineParts parts;
-    if (options.urdf.empty()) {
-        if (const int code = read_folder(options, names, parts); code != kExitClean) {
-            return code;
-        }
-    } else if (!read_urdf_file(options, parts)) {
-        return kExitInput;
+    const int code = options.urdf.empty() ? read_folder(options, names, parts)
+                                          : read_urdf_file(options, names, parts);
+    if (code != kExitClean) {
+        return code;
     }
     const std::vector<TableTool>& tools = parts.axes.tools.tools;
     if (std::any_of(tools.begin(), tools.end(), is_measured)) {
@@ -374,7 +380,7 @@ int init(InitOptions options, const CommandFiles& names) {
     const std::string folder_of_out = fs::path(options.out).parent_path().string();
     const std::string way = way_down(folder_of_out, options.folder);
     std::vector<SurveyedMesh> meshes;
-    if (!survey(parts, options.folder, way, meshes)) {
+    if (!survey(parts, options, way, meshes)) {
         return kExitInput;
     }
     if (options.urdf.empty()) {

@@ -28,6 +28,7 @@ constexpr std::array kTargets{
     Target{"gcode", &axg::fuzz::gcode},
     Target{"machine_file", &axg::fuzz::machine_file},
     Target{"stl", &axg::fuzz::stl},
+    Target{"tool_table", &axg::fuzz::tool_table},
     Target{"tritri", &axg::fuzz::tritri},
     Target{"urdf", &axg::fuzz::urdf},
     Target{"vector_asc", &axg::fuzz::vector_asc},

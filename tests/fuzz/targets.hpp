@@ -18,6 +18,7 @@ namespace axg::fuzz {
 [[nodiscard]] int gcode(const std::uint8_t* data, std::size_t size);
 [[nodiscard]] int machine_file(const std::uint8_t* data, std::size_t size);
 [[nodiscard]] int stl(const std::uint8_t* data, std::size_t size);
+[[nodiscard]] int tool_table(const std::uint8_t* data, std::size_t size);
 [[nodiscard]] int tritri(const std::uint8_t* data, std::size_t size);
 [[nodiscard]] int urdf(const std::uint8_t* data, std::size_t size);
 [[nodiscard]] int vector_asc(const std::uint8_t* data, std::size_t size);

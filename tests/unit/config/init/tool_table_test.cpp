@@ -109,7 +109,8 @@ TEST(ToolTable, InitWritesTheToolsOfTheTable) {
                   "add shank and holder\n"),
         std::string::npos)
         << text;
-    EXPECT_NE(text.find("  # tool.tbl:5: tool 5 has no length: measure it\n"), std::string::npos);
+    EXPECT_NE(text.find("  # tool.tbl:5: tool 5 has no length above 0: measure it\n"),
+              std::string::npos);
     EXPECT_NE(text.find("  - {a: table, b: tool, margin_mm: 0}\n"), std::string::npos) << text;
 }
 

@@ -232,6 +232,11 @@ TEST_F(Commands, InitReadsAUrdfFile) {
     EXPECT_EQ(machine.axes.at(0).max, 100);
     EXPECT_EQ(axguard({"check", path("m.yaml")}).exit_code, kExitClean);
     EXPECT_EQ(with({"--unit", "mm"}).exit_code, kExitUsage);
+    EXPECT_EQ(axguard({"init", "--urdf", path("m.urdf"), "--meshes", path("meshes"), "--force",
+                       "-o", path("meshes/base.stl")})
+                  .exit_code,
+              kExitUsage)
+        << "a mesh is no output";
     EXPECT_EQ(with({path("meshes")}).exit_code, kExitUsage);
     EXPECT_EQ(axguard({"init", "-o", path("n.yaml")}).exit_code, kExitUsage);
 }
