@@ -17,13 +17,13 @@
 namespace axg::test {
 namespace {
 
-enum : std::uint32_t { kRail, kCarriage, kWheel, kCutter };
-
 /// A fixed rail under z = 0, a carriage on it that X moves by -100 to 100 mm, a wheel that A turns
 /// about z by -90 to 90 degrees, and a cutter in the carriage. The overrun is 2 mm and 0.5 degrees.
-class Travel : public testing::Test {
+class OverTravel : public testing::Test {
   protected:
-    Travel() {
+    enum : std::uint32_t { kRail, kCarriage, kWheel, kCutter };
+
+    OverTravel() {
         Machine& m = loaded_.machine;
         Axis x{.name = "X", .min = -100, .max = 100};
         Axis a{.name = "A", .kind = AxisKind::rotary, .min = -kPi / 2, .max = kPi / 2};
@@ -49,14 +49,14 @@ class Travel : public testing::Test {
     LoadedMachine loaded_;
 };
 
-TEST_F(Travel, ACarriageOnItsRailIsInContactAtEveryPlace) {
+TEST_F(OverTravel, ACarriageOnItsRailIsInContactAtEveryPlace) {
     const PairOverTravel found = judge(kRail, kCarriage);
     EXPECT_EQ(found.verdict, TravelVerdict::always_near);
     EXPECT_FALSE(found.apart.is_known);
     EXPECT_LT(found.queries, 300U) << "one box is enough where nothing turns";
 }
 
-TEST_F(Travel, AWheelThatTurnsOnItsSeatIsInContactAtEveryPlace) {
+TEST_F(OverTravel, AWheelThatTurnsOnItsSeatIsInContactAtEveryPlace) {
     EXPECT_EQ(judge(kRail, kWheel).verdict, TravelVerdict::always_near);
     mesh(kWheel) = moved(mesh(kWheel), {0, 0, 0.2F});
     const PairOverTravel found = judge(kRail, kWheel);
@@ -66,7 +66,7 @@ TEST_F(Travel, AWheelThatTurnsOnItsSeatIsInContactAtEveryPlace) {
 }
 
 // The gap is on both sides of the distance that counts as contact.
-TEST_F(Travel, AGapIsFoundOnBothSidesOfContact) {
+TEST_F(OverTravel, AGapIsFoundOnBothSidesOfContact) {
     mesh(kCarriage) = moved(mesh(kCarriage), {0, 0, 0.09F});
     EXPECT_EQ(judge(kRail, kCarriage).verdict, TravelVerdict::always_near);
     mesh(kCarriage) = moved(mesh(kCarriage), {0, 0, 0.06F});
@@ -78,7 +78,7 @@ TEST_F(Travel, AGapIsFoundOnBothSidesOfContact) {
 
 // A block that the carriage meets in the last 0.1 mm of the overrun: no sample of the travel sees
 // it.
-TEST_F(Travel, AContactAtOnePlaceThatNoSampleMeetsIsFound) {
+TEST_F(OverTravel, AContactAtOnePlaceThatNoSampleMeetsIsFound) {
     mesh(kRail) = box({132, -10, 0}, {300, 10, 20});
     mesh(kCarriage) = box({-30, -30, 0}, {30, 30, 25});
     const PairOverTravel sampled = judge(kRail, kCarriage, {.queries = 0});
@@ -93,7 +93,7 @@ TEST_F(Travel, AContactAtOnePlaceThatNoSampleMeetsIsFound) {
 }
 
 // The carriage leaves its rail in the last of the overrun: contact at all samples, yet not always.
-TEST_F(Travel, AContactThatEndsAtOnePlaceIsNotPermanent) {
+TEST_F(OverTravel, AContactThatEndsAtOnePlaceIsNotPermanent) {
     mesh(kRail) = box({-300, -10, -20}, {71.5F, 10, 0});
     EXPECT_FALSE(judge(kRail, kCarriage, {.queries = 0}).apart.is_known);
     const PairOverTravel found = judge(kRail, kCarriage);
@@ -103,7 +103,7 @@ TEST_F(Travel, AContactThatEndsAtOnePlaceIsNotPermanent) {
     EXPECT_EQ(judge(kRail, kCarriage).verdict, TravelVerdict::always_near);
 }
 
-TEST_F(Travel, ABodyInsideTheOtherIsInContactWithoutATouch) {
+TEST_F(OverTravel, ABodyInsideTheOtherIsInContactWithoutATouch) {
     mesh(kRail) = box({-300, -60, -60}, {300, 60, 60});
     EXPECT_EQ(judge(kRail, kCarriage).verdict, TravelVerdict::always_near);
     mesh(kRail) = box({-131, -60, -60}, {131, 60, 60});  // comes out at the ends
@@ -113,7 +113,7 @@ TEST_F(Travel, ABodyInsideTheOtherIsInContactWithoutATouch) {
     EXPECT_EQ(judge(kRail, kCarriage).verdict, TravelVerdict::both);
 }
 
-TEST_F(Travel, EachToolCounts) {
+TEST_F(OverTravel, EachToolCounts) {
     Machine& m = loaded_.machine;
     m.tools.resize(2);
     loaded_.meshes.tools = {{"short", box({-2, -2, 5}, {2, 2, 20})},
@@ -126,7 +126,7 @@ TEST_F(Travel, EachToolCounts) {
     EXPECT_EQ(judge(kRail, kCutter).verdict, TravelVerdict::never_near);
 }
 
-TEST_F(Travel, TheQueriesAreBounded) {
+TEST_F(OverTravel, TheQueriesAreBounded) {
     const ExclusionEffort effort{.queries = 400};
     mesh(kRail) = box({132, -10, 0}, {300, 10, 20});
     mesh(kRail) = moved(mesh(kRail), {0.11F, 0, 0});
