@@ -18,9 +18,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string text_at(const Json& document, const char* key) {
-    const auto found = document.find(key);
-    return found != document.end() && found->is_string() ? found->get<std::string>() : "";
+/// Null where `of` has no such value: a file that a person edited throws nothing.
+Json value_at(const Json& of, const char* key) {
+    return of.is_object() && of.contains(key) ? of[key] : Json();
+}
+
+std::string text_at(const Json& of, const char* key) {
+    const Json found = value_at(of, key);
+    return found.is_string() ? found.get<std::string>() : "";
 }
 
 /// Why the plan in `document` is none for this machine; empty: it is.
@@ -61,14 +66,13 @@ std::optional<AdmittedPlan> read_admitted_plan(const std::string& path, const Lo
         return std::nullopt;
     }
     out.plan = *plan;
-    out.is_fit = document.value("fit", false);
+    out.is_fit = value_at(document, "fit") == true;
     out.host = text_at(document, "host");
     out.date = text_at(document, "date");
-    if (const Json cycles = document.value("figures", Json::object()).value("cycles", Json());
-        cycles.is_object()) {
-        out.engine = text_at(cycles, "engine");
-        out.longest_us = cycles.value("fill_us", 0.0);
-    }
+    const Json cycles = value_at(value_at(document, "figures"), "cycles");
+    const Json longest_us = value_at(cycles, "fill_us");
+    out.engine = text_at(cycles, "engine");
+    out.longest_us = longest_us.is_number() ? longest_us.get<double>() : 0;
     return out;
 }
 
