@@ -35,7 +35,7 @@ struct AdmitArguments {
 
 int admit_alone(const AdmitArguments& arguments, const LoadedMachine& loaded) {
     if (!forget_admission(arguments.state_dir, arguments.run.bus, stderr)) {
-        return kExitInternal;
+        return kExitInput;
     }
     LiveEngines engines(loaded, arguments.engine, arguments.run.is_stoppable);
     const int code = log_engines(engines);
@@ -56,7 +56,7 @@ int run_admit(const AdmitArguments& arguments) {
     const OneGuard claimed(arguments.state_dir, arguments.run.bus);
     if (claimed.status() != OneGuard::Status::mine) {
         fmt::print(stderr, "axguardd: {}\n", claimed.fault());
-        return claimed.status() == OneGuard::Status::held ? kExitUnfit : kExitInternal;
+        return claimed.status() == OneGuard::Status::held ? kExitUnfit : kExitInput;
     }
     LoadedMachine loaded;
     const int code = load(arguments.machine, loaded);

@@ -15,7 +15,13 @@ struct CommandFiles {
         const std::string* path;  // empty: not given
     };
     std::vector<Named> inputs, outputs, folders;
+    const std::string* json = nullptr;  // target of --json; null: no such option
+    bool has_document = false;          // it was written, or its writing failed
 };
+
+/// An input whose name has the ending of another kind of file: a program or a trace as MACHINE, a
+/// machine file as PROGRAM or TRACE. Names both if they are swapped. Empty: none.
+[[nodiscard]] std::string misplaced_input(const std::vector<CommandFiles::Named>& inputs);
 
 /// Whether every output can be written and is no other file of the command. Prints faults on
 /// `messages`.

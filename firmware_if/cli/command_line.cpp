@@ -8,16 +8,77 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
 #include <string_view>
+#include <system_error>
 #include <type_traits>
 #include <utility>
 
 #include "config/text/nearest_word.hpp"
 #include "config/text/quote_text.hpp"
+#include "firmware_if/cli/document_json.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/whole_file.hpp"
 
 namespace axg {
+namespace {
+
+const char* meaning_of(int exit_code) {
+    switch (exit_code) {
+        case kExitUsage:
+            return "wrong usage; the messages on stderr name it";
+        case kExitInput:
+            return "configuration or input refused; the messages on stderr name it";
+        case kExitUnfit:
+            return "this host cannot run the guard; the messages on stderr name the reason";
+        default:
+            return "no result; the messages on stderr name the reason";
+    }
+}
+
+/// The document of a fault may replace an older document, and nothing else: the command ended
+/// before it knew all files that it reads.
+bool is_free_for_fault(const std::string& target, int exit_code) {
+    if (target.empty() || (target != "-" && exit_code == kExitUsage)) {
+        return false;
+    }
+    std::error_code error;
+    return !std::filesystem::is_regular_file(target, error) || std::ifstream(target).peek() == '{';
+}
+
+void write_fault(const CLI::App& command, const std::string& target, int exit_code,
+                 const std::string& fault) {
+    const CLI::App* const program = command.get_parent();
+    (void)write_whole_file(target,
+                           describe_fault({program->get_name(), program->version(),
+                                           command.get_name(), exit_code, fault}),
+                           stderr);
+}
+
+/// A line for each option that the command does not have, with the one that resembles it.
+std::string unknown_options(const CLI::App& command) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : command.get_options()) {
+        for (const std::string& name : option->get_lnames()) {
+            names.push_back("--" + name);
+        }
+    }
+    const std::vector<std::string_view> known(names.begin(), names.end());
+    std::string text;
+    for (const std::string& word : command.remaining()) {
+        const std::string name = word.substr(0, word.find('='));
+        if (!name.starts_with('-') || name.size() < 2) {
+            continue;
+        }
+        const std::string_view near = nearest_word(name, known);
+        text += fmt::format("{}: unknown option.{}\n", escaped(name),
+                            near.empty() ? "" : fmt::format(" Did you mean {}?", near));
+    }
+    return text;
+}
+
+}  // namespace
 
 Option Option::required() const {
     option_->required();
@@ -126,14 +187,20 @@ void Command::set_group(const std::string& heading) const {
 }
 
 void Command::set_action(std::function<int()> action) const {
-    app_->callback([action = std::move(action), exit_code = exit_code_, files = files_] {
-        *exit_code = are_sound(*files, stderr) ? action() : kExitUsage;
-    });
+    app_->callback(
+        [app = app_, action = std::move(action), exit_code = exit_code_, files = files_] {
+            *exit_code = are_sound(*files, stderr) ? action() : kExitUsage;
+            if (*exit_code != kExitClean && files->json != nullptr && !files->has_document &&
+                is_free_for_fault(*files->json, *exit_code)) {
+                write_fault(*app, *files->json, *exit_code, meaning_of(*exit_code));
+            }
+        });
 }
 
 CommandLine::CommandLine(const ProgramTitle& title)
     : app_(std::make_unique<CLI::App>(title.purpose, title.name)), exit_code_(kExitClean) {
-    app_->set_version_flag("--version", title.version);
+    app_->set_version_flag("-V,--version", title.version);
+    app_->footer("Run " + title.name + " help COMMAND for the options of a command.");
     app_->require_subcommand(1);
 }
 
@@ -167,15 +234,42 @@ bool CommandLine::begins_well(const std::vector<std::string>& words,
 }
 
 int CommandLine::parse_command(std::vector<std::string> words, const std::string& hint) {
+    if (!words.empty() && words.front() == "help") {
+        words.erase(words.begin());
+        words.resize(std::min<std::size_t>(words.size(), 1));
+        words.emplace_back("--help");
+    }
     return begins_well(words, hint) ? parse(std::move(words)) : kExitUsage;
 }
 
+int CommandLine::end_unparsed(const CLI::ParseError& error,
+                              const std::vector<std::string>& words) const {
+    const std::vector<const CLI::App*> chosen = std::as_const(*app_).get_subcommands({});
+    const auto command = std::find_if(chosen.begin(), chosen.end(),
+                                      [](const CLI::App* one) { return one->count() != 0; });
+    const bool is_fault = error.get_exit_code() != 0;
+    const std::string unknown =
+        is_fault && command != chosen.end() ? unknown_options(**command) : std::string();
+    if (unknown.empty()) {
+        (void)app_->exit(error);
+    } else {
+        fmt::print(stderr, "{}Run {} help {} for its options.\n", unknown, app_->get_name(),
+                   (*command)->get_name());
+    }
+    if (is_fault && command != chosen.end() &&
+        std::find(words.begin(), words.end(), "--json") != words.end() &&
+        (*command)->get_option_no_throw("--json") != nullptr) {
+        write_fault(**command, "-", kExitUsage, unknown.empty() ? error.what() : unknown);
+    }
+    return is_fault ? kExitUsage : kExitClean;
+}
+
 int CommandLine::parse(std::vector<std::string> words) {
-    std::reverse(words.begin(), words.end());  // as CLI11 requires
+    std::vector<std::string> reversed(words.rbegin(), words.rend());  // as CLI11 requires
     try {
-        app_->parse(words);
+        app_->parse(reversed);
     } catch (const CLI::ParseError& error) {
-        return app_->exit(error) == 0 ? kExitClean : kExitUsage;
+        return end_unparsed(error, words);
     }
     return exit_code_;
 }

@@ -14,6 +14,7 @@
 namespace CLI {
 class App;
 class Option;
+class ParseError;
 }  // namespace CLI
 
 namespace axg {
@@ -96,7 +97,7 @@ class CommandLine {
     [[nodiscard]] std::vector<std::string> command_names() const;
 
     /// Runs the command that the first word names; prints the commands there are when it names
-    /// none.
+    /// none. "help COMMAND" prints the help of a command.
     /// @param hint  for a word that resembles no command: what to type instead
     [[nodiscard]] int parse_command(std::vector<std::string> words, const std::string& hint);
     /// Runs the command that the words name. Prints help and complaints itself.
@@ -108,6 +109,9 @@ class CommandLine {
     /// Whether the first word is a command or an option.
     [[nodiscard]] bool begins_well(const std::vector<std::string>& words,
                                    const std::string& hint) const;
+    /// Prints help or complaints about words that did not parse. Returns the exit code.
+    [[nodiscard]] int end_unparsed(const CLI::ParseError& error,
+                                   const std::vector<std::string>& words) const;
 
     std::unique_ptr<CLI::App> app_;
     int exit_code_;

@@ -12,4 +12,13 @@ namespace axg {
 /// bytes that are not UTF-8 are replaced.
 [[nodiscard]] std::string text_of(const nlohmann::ordered_json& document);
 
+/// A command that ended without results.
+struct CommandFault {
+    std::string program, version, command;
+    int exit_code = 0;
+    std::string fault;
+};
+/// Its document, for a program that asked for one.
+[[nodiscard]] std::string describe_fault(const CommandFault& fault);
+
 }  // namespace axg

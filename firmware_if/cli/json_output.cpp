@@ -11,6 +11,7 @@ void add_json_option(const Command& command, JsonOutput& output) {
         "--json{-}", output.target,
         "write the results as one JSON document to stdout, or to FILE with --json=FILE");
     command.files()->outputs.push_back({"--json", &output.target});
+    command.files()->json = &output.target;
     output.files = command.files();
 }
 
@@ -19,6 +20,9 @@ std::FILE* JsonOutput::words() const {
 }
 
 bool write_json(const JsonOutput& output, const std::string& text) {
+    if (output.files) {
+        output.files->has_document = true;
+    }
     return !output.is_wanted() || write_whole_file(output.target, text, stderr);
 }
 

@@ -12,8 +12,8 @@ class Command;
 struct CommandFiles;
 
 struct JsonOutput {
-    std::string target;                           // empty: none; "-": stdout; else a file
-    std::shared_ptr<const CommandFiles> files{};  // of the command; null: no other output
+    std::string target;                     // empty: none; "-": stdout; else a file
+    std::shared_ptr<CommandFiles> files{};  // of the command; null: no other output
 
     [[nodiscard]] bool is_wanted() const noexcept { return !target.empty(); }
     /// Stream for a command's text: stderr while a result goes to stdout, else stdout.

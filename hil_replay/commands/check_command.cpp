@@ -198,7 +198,7 @@ void add_check(CommandLine& line) {
     command.add_input("--trace", options->plan.trace,
                       "with --plan: include the samples of this trace of the machine");
     command.add_output_folder(
-        "--out", options->plan.out,
+        "-o,--output", options->plan.out,
         "with --plan: folder for plan.csv, lost.csv, conditions.csv, plan.svg and plan.png");
     command.add_input("--plan-of", options->plan_of,
                       "compare the plan of the machine file with that of this verdict, which "

@@ -74,7 +74,8 @@ void add_compile(CommandLine& line) {
     command.set_example("axguard compile config/machines/paper-trunnion.yaml -o paper.axg");
     add_machine_options(command, arguments->machine);
     command
-        .add_output("-o,--out", arguments->output, "compiled machine to write (name ends in .axg)")
+        .add_output("-o,--output", arguments->output,
+                    "compiled machine to write (name ends in .axg)")
         .required();
     add_json_option(command, arguments->json);
     command.set_action([arguments] { return compile(*arguments); });

@@ -200,7 +200,7 @@ int demo(const DemoOptions& options) {
     }
     fs::create_directories(options.out, code);
     if (code) {
-        fmt::print(stderr, "{}: {}. Pass another folder with --out FOLDER.\n", options.out,
+        fmt::print(stderr, "{}: {}. Pass another folder with --output FOLDER.\n", options.out,
                    code.message());
         return kExitInput;
     }
@@ -228,7 +228,7 @@ void add_demo(CommandLine& line) {
     command.set_group("Set up a machine");
     command.set_example("axguard demo");
     command.add_option("--data", options->data, "folder that contains config/ and hil_replay/");
-    command.add_output_folder("--out", options->out, "folder for traces, report and log")
+    command.add_output_folder("-o,--output", options->out, "folder for traces, report and log")
         .shows_default();
     add_details_option(command, options->has_details);
     command.set_action([options] { return demo(*options); });

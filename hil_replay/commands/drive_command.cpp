@@ -19,6 +19,7 @@
 #include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/guard_exit.hpp"
+#include "firmware_if/cli/interrupt.hpp"
 #include "firmware_if/cli/json_output.hpp"
 #include "firmware_if/cli/machine_options.hpp"
 #include "firmware_if/cli/progress.hpp"
@@ -111,7 +112,8 @@ DriveResult run_observed(const DriveArguments& arguments, const Machine& machine
                          const AxisPositions& start, CommandedMotion motion, double whole_s,
                          const DriveOptions& options, DriveCsv& csv, PageRecorder* page,
                          PathJudge& judge, ProgramLines& lines) {
-    Progress progress;
+    Interrupt interrupt;
+    std::optional<Progress> progress(std::in_place);
     DriveObservers observers;
     std::int64_t noted_us = INT64_MIN;
     observers.watch = [&](std::int64_t time_us, std::span<const AxisMotion> axes) {
@@ -119,9 +121,15 @@ DriveResult run_observed(const DriveArguments& arguments, const Machine& machine
         judge.look(time_us, axes, tool == 0 ? machine.first_tool : tool);
     };
     observers.each = [&](const MotionBoard& board, const DriveGuard& guard) {
-        if (progress.is_due()) {
-            const double done_s = static_cast<double>(board.next_latch_us() - kBoardStartUs) * 1e-6;
-            progress.show(done_s, whole_s > 0 ? done_s / whole_s : 0, to_text(board.state()));
+        const double done_s = static_cast<double>(board.next_latch_us() - kBoardStartUs) * 1e-6;
+        if (interrupt.was_sent()) {
+            progress.reset();
+            fmt::print(stderr, "axguard: interrupted: {} until {:.3f} s of the drive\n",
+                       has_reason(guard.stop()) ? "a stop" : "no stop", done_s);
+            interrupt.end();
+        }
+        if (progress->is_due()) {
+            progress->show(done_s, whole_s > 0 ? done_s / whole_s : 0, to_text(board.state()));
         }
         if (!arguments.csv.empty()) {
             csv.add(board, guard);

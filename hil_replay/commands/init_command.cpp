@@ -429,7 +429,7 @@ void add_init(CommandLine& line) {
         "machine.yml of a QtPyVCP screen (source of parents, axes, signs and pivots)");
     command.add_input("--urdf", options->urdf,
                       "URDF file (source of bodies, joints, travel and speeds)");
-    command.add_output("-o,--out", options->out, "machine file to write").required();
+    command.add_output("-o,--output", options->out, "machine file to write").required();
     command
         .add_option(
             "--unit", options->unit,

@@ -19,6 +19,7 @@
 #include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/guard_exit.hpp"
+#include "firmware_if/cli/interrupt.hpp"
 #include "firmware_if/cli/json_output.hpp"
 #include "firmware_if/cli/machine_options.hpp"
 #include "firmware_if/cli/progress.hpp"
@@ -135,21 +136,36 @@ bool write_outputs(const ReplayArguments& arguments, const ReplayReport& report,
     return written;
 }
 
-/// Feeds the trace, up to the first stop that ends it.
+/// Prints how far an interrupted replay came.
+void print_interrupted(const ReplayRun& run, std::int64_t last_us) {
+    const std::string found =
+        run.stop_count() == 0 ? "no stop" : fmt::format("{} stops", run.stop_count());
+    fmt::print(stderr,
+               "axguard: interrupted: {} until {:.6f} s ({} samples); the rest is not read\n",
+               found, static_cast<double>(last_us) * 1e-6, run.cycles().count());
+}
+
+/// Feeds the trace, up to the first stop that ends it. Ctrl-C ends the program here.
 TraceEnd feed(TraceReader& trace, ReplayRun& run, std::optional<AddedSession> added) {
-    Progress progress;
+    Interrupt interrupt;
+    std::optional<Progress> progress(std::in_place);
     CanFrame frame;
     std::optional<std::int64_t> first_us;
     bool goes_on = true;
-    while (goes_on && trace.next(frame)) {
+    while (goes_on && !interrupt.was_sent() && trace.next(frame)) {
         goes_on = run.on_frame(frame);
         const std::optional<CanFrame> session = added ? added->behind(frame) : std::nullopt;
         goes_on = goes_on && (!session || run.on_added(*session));
         first_us = first_us.value_or(frame.time_us);
-        if (run.frame_count() % 4096 == 0 && progress.is_due()) {
-            progress.show(static_cast<double>(frame.time_us - *first_us) * 1e-6, trace.share(),
-                          fmt::format("{} frames", run.frame_count()));
+        if (run.frame_count() % 4096 == 0 && progress->is_due()) {
+            progress->show(static_cast<double>(frame.time_us - *first_us) * 1e-6, trace.share(),
+                           fmt::format("{} frames", run.frame_count()));
         }
+    }
+    if (interrupt.was_sent()) {
+        progress.reset();
+        print_interrupted(run, frame.time_us);
+        interrupt.end();
     }
     run.finish();
     TraceEnd end = end_of(trace);

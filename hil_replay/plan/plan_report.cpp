@@ -173,7 +173,7 @@ bool write_files(const CheckReport& report, const ModelChoice& choice, const std
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error) {
-        fmt::print(stderr, "{}: {}. Pass another folder with --out FOLDER.\n",
+        fmt::print(stderr, "{}: {}. Pass another folder with --output FOLDER.\n",
                    escaped(folder, 4096), error.message());
         return false;
     }

@@ -26,7 +26,7 @@ plan() {
     local machine=$1 to=$out/$2
     shift 2
     echo "== check $machine --plan $*"
-    (time "$bin/axguard" check "$fine/$machine" --plan --positions 200 --passes 2 --out "$to" \
+    (time "$bin/axguard" check "$fine/$machine" --plan --positions 200 --passes 2 --output "$to" \
         --json="$to.json" "$@") > "$to.txt" 2>&1
     local code=$?
     sed -n '/multiprocessors/p; /^plan:/,$p' "$to.txt"

@@ -23,7 +23,7 @@ trap 'rm -rf "$folder"' EXIT
     --focus cutter-c
 judge=("$build/tests/axg_exact_scene" "$folder/scene")
 for ask in hit count clearance; do
-    "$build/axguard-lab" query "$folder/scene" --engine cpu --ask "$ask" --out "$folder/$ask.csv" \
+    "$build/axguard-lab" query "$folder/scene" --engine cpu --ask "$ask" -o "$folder/$ask.csv" \
         >/dev/null
     echo "--ask $ask (seed $seed):"
     "${judge[@]}" "$folder/$ask.csv"

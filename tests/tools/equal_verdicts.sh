@@ -88,7 +88,7 @@ query_scene() { # PRESET
     local ask
     for ask in hit count clearance; do
         program_of "$1" axguard-lab query "$folder/scene" --engine cpu --ask "$ask" \
-            --out "$folder/$1-$ask.csv" >/dev/null
+            --output "$folder/$1-$ask.csv" >/dev/null
     done
 }
 each query_scene "${asked[@]}"

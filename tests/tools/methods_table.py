@@ -17,7 +17,7 @@ HEAD = (f"{'method':30}{'missed':>8}{'deepest':>10}{'false':>7}{'undecided':>11}
 
 def totals(lab, folder, cases, method, scratch):
     result, document = scratch / "result.csv", scratch / "result.json"
-    subprocess.run([lab, "accuracy", "--cases", folder / cases, "--method", method, "--out",
+    subprocess.run([lab, "accuracy", "--cases", folder / cases, "--method", method, "--output",
                     result], check=True, stdout=subprocess.DEVNULL)
     exclude = [] if "pose" in cases else [f"--exclude={EXTREME}"]
     run = subprocess.run([sys.executable, "-B", folder / "check.py", folder / "answers.csv", result,

@@ -111,7 +111,7 @@ int accuracy(const AccuracyOptions& options) {
     if (options.cases.empty() || options.method.empty() || options.out.empty()) {
         fmt::print(stderr,
                    "axguard-lab accuracy: missing options (expected --cases FILE.bin, --method "
-                   "NAME and --out RESULT.csv). List the methods with --list.\n");
+                   "NAME and --output RESULT.csv). List the methods with --list.\n");
         return kExitUsage;
     }
     const lab::Method* const method = method_of(options.method);
@@ -148,10 +148,11 @@ void add_accuracy(CommandLine& line) {
     const Command command = line.add_command(
         "accuracy", "Test a file of triangle pairs with one of many methods, for comparison");
     command.set_example(
-        "axguard-lab accuracy --cases pairs_f32.bin --method certified-f32 --out r.csv");
+        "axguard-lab accuracy --cases pairs_f32.bin --method certified-f32 --output r.csv");
     command.add_input("--cases", options->cases, "input file of pairs (TTP1) or meshes (TTM1)");
     command.add_option("--method", options->method, "method to use, one of --list");
-    command.add_output("--out", options->out, "CSV file to write: case_id,answer[,distance_mm]");
+    command.add_output("-o,--output", options->out,
+                       "CSV file to write: case_id,answer[,distance_mm]");
     command.add_flag("--list", options->list, "print the methods and their sources");
     command.add_flag("--time", options->time,
                      "measure only the time per random pair, ns, of the method or of all methods");

@@ -177,7 +177,8 @@ void add_chart(CommandLine& line) {
     const Command command = line.add_command(
         "chart", "Measure speed and accuracy of many methods and draw the figures");
     command.set_example("axguard-lab chart -o figures/");
-    command.add_output_folder("-o,--out", options->out, "folder for tables and figures").required();
+    command.add_output_folder("-o,--output", options->out, "folder for tables and figures")
+        .required();
     command.add_option("--seed", options->seed, "seed of all random values");
     command.add_flag("--quick", options->quick, "use few cases: seconds instead of minutes");
     command.add_option(

@@ -252,12 +252,14 @@ void add_query(CommandLine& line) {
     auto options = std::make_shared<QueryOptions>();
     const Command command =
         line.add_command("query", "Query meshes at given poses: contact, count or clearance");
-    command.set_example("axguard-lab query scene/ --out answers.csv --ask clearance --time");
+    command.set_example("axguard-lab query scene/ --output answers.csv --ask clearance --time");
     command
         .add_option("SCENE_DIR", options->folder,
                     "folder with bodies.csv, pairs.csv, poses.csv and STL files")
         .required();
-    command.add_output("--out", options->out, "CSV file to write: pose,pair,hit,count,clearance_mm")
+    command
+        .add_output("-o,--output", options->out,
+                    "CSV file to write: pose,pair,hit,count,clearance_mm")
         .required();
     command
         .add_option("--engine", options->engine, "cpu, cuda (GPU) or auto (CUDA if there is a GPU)")

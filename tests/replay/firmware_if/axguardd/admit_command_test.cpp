@@ -103,7 +103,7 @@ TEST_F(Admit, AnOldVerdictThatCannotBeRemovedEndsTheStart) {
                             shop.file("."), "--engine", "cpu"}),
               kExitInput);
     EXPECT_FALSE(fs::exists(shop.file("nocan9.latch"))) << "it went on";
-    EXPECT_EQ(admit({}), kExitInternal);
+    EXPECT_EQ(admit({}), kExitInput);
 }
 
 TEST_F(Admit, ABusIsTheNameOfAnInterface) {
@@ -120,7 +120,7 @@ TEST_F(Admit, ABusIsTheNameOfAnInterface) {
 }
 
 TEST_F(Admit, AFolderThatCannotBeWrittenToIsNoVerdict) {
-    EXPECT_EQ(admit({}, "missing"), kExitInternal);
+    EXPECT_EQ(admit({}, "missing"), kExitInput);
 }
 
 TEST_F(Admit, AWrongResultIsWaivedByNobody) {

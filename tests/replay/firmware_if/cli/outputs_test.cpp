@@ -89,10 +89,10 @@ TEST_F(Outputs, NamesAreTriedBeforeTheWork) {
         EXPECT_EQ(shop.out, "") << name;
         EXPECT_EQ(shop.run("drive " + kMachine + " p.ngc --report " + name), kExitUsage) << name;
         EXPECT_EQ(shop.run("compile " + kMachine + " -o " + name), kExitUsage) << name;
-        EXPECT_EQ(shop.run("query scene --out " + std::string(name)), kExitUsage) << name;
+        EXPECT_EQ(shop.run("query scene --output " + std::string(name)), kExitUsage) << name;
     }
-    EXPECT_EQ(shop.run("check " + kMachine + " --plan --out p.ngc"), kExitUsage);
-    EXPECT_EQ(shop.run("demo --out ''"), kExitUsage);
+    EXPECT_EQ(shop.run("check " + kMachine + " --plan --output p.ngc"), kExitUsage);
+    EXPECT_EQ(shop.run("demo --output ''"), kExitUsage);
 }
 
 TEST_F(Outputs, APipeStaysAPipe) {

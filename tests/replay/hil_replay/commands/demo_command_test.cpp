@@ -104,7 +104,7 @@ TEST_F(DemoCommand, ItsNextStepsWorkAsPrinted) {
 }
 
 TEST_F(DemoCommand, DetailsPrintEachCommandWithItsText) {
-    ASSERT_EQ(shop->run("demo --details --out other"), kExitClean) << shop->err;
+    ASSERT_EQ(shop->run("demo --details --output other"), kExitClean) << shop->err;
     for (const char* const text :
          {"\n$ axguard simulate ", "\n$ axguard replay ", "samples not proven\n", "samples above\n",
           "leaf_pairs", "1  paper-trunnion-clean.ngc"}) {

@@ -77,7 +77,7 @@ class CheckPlan : public testing::Test {
 };
 
 TEST_F(CheckPlan, ModelsGetCoarserAndTheCoarsestThatLosesNothingIsChosen) {
-    const Json plan = plan_of("--out plan");
+    const Json plan = plan_of("--output plan");
     const Json& models = plan.at("models");
     ASSERT_GE(models.size(), 3U);
     EXPECT_EQ(models.at(0).at("simplify_mm"), 0);
@@ -139,7 +139,7 @@ TEST_F(CheckPlan, TheLinesLoadAndLoseNothingOfTheTrace) {
 /// of surfaces, so inside it, too.
 TEST_F(CheckPlan, WhatIsLostIsListed) {
     const Json plan =
-        report_of("check whole.yaml --plan --positions 2000 --passes 1 --out plan", 0).at("plan");
+        report_of("check whole.yaml --plan --positions 2000 --passes 1 -o plan", 0).at("plan");
     std::istringstream csv(content_of(shop_.file("plan/lost.csv")));
     std::string line;
     ASSERT_TRUE(std::getline(csv, line));

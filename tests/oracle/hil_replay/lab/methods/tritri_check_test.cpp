@@ -33,7 +33,7 @@ void judge(const std::string& method, const Limits& limits) {
         fs::temp_directory_path() / ("axg_tritri_" + std::to_string(getpid()) + ".csv");
     testing::internal::CaptureStdout();
     const int exit_code = run_axguard_lab({"accuracy", "--cases", kTritriFolder + limits.cases,
-                                           "--method", method, "--out", result.string()});
+                                           "--method", method, "--output", result.string()});
     std::fflush(stdout);
     testing::internal::GetCapturedStdout();
     EXPECT_EQ(exit_code, 0) << method;

@@ -188,21 +188,21 @@ TEST_F(SceneFolderTest, QuerySaysSoWithExit3) {
     if (!std::filesystem::exists(AXG_PROGRAM)) {
         GTEST_SKIP() << AXG_PROGRAM << " is not built";
     }
-    ASSERT_EQ(shop.run("query scene --out answers.csv --within 40"), kExitClean) << shop.err;
+    ASSERT_EQ(shop.run("query scene --output answers.csv --within 40"), kExitClean) << shop.err;
     const auto answers = test::read_answers(shop.file("answers.csv"));
     ASSERT_EQ(answers.size(), 1U);
     EXPECT_EQ(answers[0].hit, 0);
     EXPECT_LE(answers[0].clearance_mm, 29);
     EXPECT_GT(answers[0].clearance_mm, 29 - 1e-6);
-    ASSERT_EQ(shop.run("query scene --out answers.csv --within 10"), kExitClean);
+    ASSERT_EQ(shop.run("query scene --output answers.csv --within 10"), kExitClean);
     EXPECT_EQ(test::read_answers(shop.file("answers.csv"))[0].clearance_mm, -1) << "beyond: empty";
-    ASSERT_EQ(shop.run("query scene --out answers.csv --ask hit"), kExitClean);
+    ASSERT_EQ(shop.run("query scene --output answers.csv --ask hit"), kExitClean);
     EXPECT_EQ(test::read_answers(shop.file("answers.csv"))[0].count, -1) << "not asked for: empty";
     (void)shop.write("scene/pairs.csv", "pair,a,b\np,rod,sphere\n");
-    EXPECT_EQ(shop.run("query scene --out answers.csv"), kExitInput);
+    EXPECT_EQ(shop.run("query scene --output answers.csv"), kExitInput);
     EXPECT_NE(shop.err.find("scene/pairs.csv:2: "), std::string::npos) << shop.err;
     EXPECT_EQ(shop.run("query scene"), kExitUsage);
-    EXPECT_EQ(shop.run("query scene --out a.csv --ask distance"), kExitUsage);
+    EXPECT_EQ(shop.run("query scene --output a.csv --ask distance"), kExitUsage);
 }
 
 // Surfaces far apart, and one body inside the other all the same; an open one has no inside.
@@ -217,7 +217,7 @@ TEST_F(SceneFolderTest, ABodyInsideAnotherIsAHit) {
         scene.pose_count = 1;
         scene.placed = {Pose{}, test::shifted(x_mm, 5, 5)};
         test::write_scene(scene, shop.file("nested"));
-        EXPECT_EQ(shop.run("query nested --out answers.csv --json"), kExitClean) << shop.err;
+        EXPECT_EQ(shop.run("query nested --output answers.csv --json"), kExitClean) << shop.err;
         const auto answers = test::read_answers(shop.file("answers.csv"));
         EXPECT_EQ(answers.size(), 1U);
         const bool is_counted = shop.out.find("\"contained\": 1") != std::string::npos;

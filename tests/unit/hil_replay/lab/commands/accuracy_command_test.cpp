@@ -182,7 +182,7 @@ class AccuracyCommand : public testing::Test {
         return {std::istreambuf_iterator<char>(in), {}};
     }
     [[nodiscard]] Outcome judge(const std::string& method) const {
-        return accuracy({"--cases", path("c.bin"), "--method", method, "--out", path("r.csv")});
+        return accuracy({"--cases", path("c.bin"), "--method", method, "--output", path("r.csv")});
     }
 
   private:
@@ -231,7 +231,7 @@ TEST_F(AccuracyCommand, FaultsNameThePlaceAndWhatIsWanted) {
     EXPECT_NE(unknown.err.find("Did you mean sat17-f32?"), std::string::npos) << unknown.err;
     EXPECT_EQ(accuracy({"--cases", path("c.bin")}).exit_code, kExitUsage);
     const Outcome missing =
-        accuracy({"--cases", path("no.bin"), "--method", "sat17-f32", "--out", path("r.csv")});
+        accuracy({"--cases", path("no.bin"), "--method", "sat17-f32", "--output", path("r.csv")});
     EXPECT_EQ(missing.exit_code, kExitInput);
     EXPECT_EQ(missing.err, path("no.bin") +
                                ": invalid file (found No such file or directory, expected a file "
