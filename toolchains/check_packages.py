@@ -176,6 +176,9 @@ def check_package(checks, package, build, listed, folder):
         names = {name, name.removesuffix(".gz"), f"{name}.gz"}
         checks.expect(any((into / "usr/share/doc" / field["Package"] / each).is_file()
                           for each in names), f"{package.name}: no {name}")
+    if field["Package"] in ("axguard", "axguardd", "axguard-lab"):
+        completion = into / "usr/share/bash-completion/completions" / field["Package"]
+        checks.expect(completion.is_file(), f"{package.name}: no completion for bash")
     for page in into.rglob("*.md"):
         for link in re.findall(r"\]\((?!\w+:|#)([^)#\s]+)(?:#[^)]*)?\)",
                                page.read_text(encoding="utf-8")):

@@ -108,6 +108,22 @@ foreach(name IN LISTS manuals)
   install(FILES ${PROJECT_BINARY_DIR}/packaged/${name}.1
           DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT ${name})
 endforeach()
+# A shell reads these when it first completes a word of the program, which then prints the rest: a
+# cross build cannot run it.
+foreach(name IN LISTS manuals)
+  set(folder ${PROJECT_BINARY_DIR}/packaged/completion/${name})
+  file(CONFIGURE OUTPUT ${folder}/${name} CONTENT "eval \"$(@name@ completion bash)\"\n" @ONLY)
+  string(REPLACE "-" "_" function ${name})
+  file(CONFIGURE OUTPUT ${folder}/_${name} @ONLY CONTENT
+    "#compdef @name@\neval \"$(@name@ completion zsh)\"\n_@function@ \"$@\"\n")
+  file(CONFIGURE OUTPUT ${folder}/${name}.fish CONTENT "@name@ completion fish | source\n" @ONLY)
+  install(FILES ${folder}/${name} DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
+          COMPONENT ${name})
+  install(FILES ${folder}/_${name} DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions
+          COMPONENT ${name})
+  install(FILES ${folder}/${name}.fish
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT ${name})
+endforeach()
 install(DIRECTORY ${AXG_PAGES}/ DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/axguard-doc/pages
         COMPONENT axguard-doc)
 add_custom_target(packaged_pages DEPENDS ${pages})

@@ -374,6 +374,7 @@ int run_axguardd(std::vector<std::string> words) {
     add_admit(line);
     add_status(line);
     add_board_test(line);
+    line.add_completion();
     return line.parse_command(std::move(words), "Run axguardd --help for the list.");
 }
 

@@ -17,6 +17,7 @@
 
 #include "config/text/nearest_word.hpp"
 #include "config/text/quote_text.hpp"
+#include "firmware_if/cli/completion.hpp"
 #include "firmware_if/cli/document_json.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/whole_file.hpp"
@@ -76,6 +77,38 @@ std::string unknown_options(const CLI::App& command) {
                             near.empty() ? "" : fmt::format(" Did you mean {}?", near));
     }
     return text;
+}
+
+/// "TEXT:{a,b}" are two words; any other type has none.
+std::vector<std::string> allowed_words(const CLI::Option& option) {
+    const std::string type = option.get_type_name();
+    const std::size_t begin = type.find(":{"), end = type.rfind('}');
+    if (begin == std::string::npos || end == std::string::npos) {
+        return {};
+    }
+    return CLI::detail::split(type.substr(begin + 2, end - begin - 2), ',');
+}
+
+CompletedCommand completed(const CLI::App& command) {
+    CompletedCommand out{command.get_name(), command.get_description(), {}, {}};
+    for (const CLI::Option* option : command.get_options()) {
+        CompletedOption one{{},
+                            option->get_description(),
+                            allowed_words(*option),
+                            option->get_items_expected_max() > 0};
+        for (const std::string& name : option->get_snames()) {
+            one.names.push_back("-" + name);
+        }
+        for (const std::string& name : option->get_lnames()) {
+            one.names.push_back("--" + name);
+        }
+        if (one.names.empty()) {
+            out.words.insert(out.words.end(), one.words.begin(), one.words.end());
+        } else {
+            out.options.push_back(std::move(one));
+        }
+    }
+    return out;
 }
 
 }  // namespace
@@ -208,6 +241,22 @@ CommandLine::~CommandLine() = default;
 
 Command CommandLine::add_command(const std::string& name, const std::string& purpose) {
     return {app_->add_subcommand(name, purpose), &exit_code_};
+}
+
+void CommandLine::add_completion() {
+    const Command command = add_command("completion", "Print the completion script of a shell");
+    command.set_example("source <(" + app_->get_name() + " completion bash)");
+    command.add_option("SHELL", shell_, "shell that reads the script")
+        .required()
+        .one_of({"bash", "zsh", "fish"});
+    command.set_action([this] {
+        std::vector<CompletedCommand> commands;
+        for (const CLI::App* one : std::as_const(*app_).get_subcommands({})) {
+            commands.push_back(completed(*one));
+        }
+        fmt::print("{}", completion_script(shell_, app_->get_name(), commands));
+        return static_cast<int>(kExitClean);
+    });
 }
 
 std::vector<std::string> CommandLine::command_names() const {

@@ -93,6 +93,8 @@ class CommandLine {
     CommandLine& operator=(const CommandLine&) = delete;
 
     Command add_command(const std::string& name, const std::string& purpose);
+    /// Adds the command that prints a shell's completion of all commands.
+    void add_completion();
     /// In the order in which they were added.
     [[nodiscard]] std::vector<std::string> command_names() const;
 
@@ -115,6 +117,7 @@ class CommandLine {
 
     std::unique_ptr<CLI::App> app_;
     int exit_code_;
+    std::string shell_;  // of the completion
 };
 
 }  // namespace axg

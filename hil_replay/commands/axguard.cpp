@@ -23,6 +23,7 @@ int run_axguard(std::vector<std::string> words, const ReplayObserver& observer) 
     add_drive(line);
     add_inspect(line);
     add_watch(line);
+    line.add_completion();
     return line.parse_command(std::move(words), "Run axguard demo for an example.");
 }
 

@@ -17,6 +17,7 @@ int run_axguard_lab(std::vector<std::string> words) {
     add_chart(line);
     add_bench(line);
     add_ablated_drive(line);
+    line.add_completion();
     return line.parse_command(std::move(words), "Run axguard-lab --help for the list.");
 }
 
