@@ -18,6 +18,7 @@ int run_axguard(std::vector<std::string> words, const ReplayObserver& observer) 
     add_init(line);
     add_check(line);
     add_compile(line);
+    add_verify(line);
     add_simulate(line);
     add_replay(line, observer);
     add_drive(line);

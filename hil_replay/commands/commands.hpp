@@ -20,5 +20,6 @@ void add_replay(CommandLine& line, const ReplayObserver& observer);
 void add_drive(CommandLine& line);
 void add_inspect(CommandLine& line);
 void add_demo(CommandLine& line);
+void add_verify(CommandLine& line);
 
 }  // namespace axg

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // axguard replay: a CAN trace against a machine, cycle by cycle, until the permit is withdrawn.
+#include "hil_replay/commands/replay_command.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -29,6 +31,7 @@
 #include "hil_replay/commands/black_box_command.hpp"
 #include "hil_replay/commands/commands.hpp"
 #include "hil_replay/commands/details_option.hpp"
+#include "hil_replay/page/nearest_approach.hpp"
 #include "hil_replay/page/pair_clearances.hpp"
 #include "hil_replay/page/run_page.hpp"
 #include "hil_replay/place/program_finder.hpp"
@@ -44,19 +47,6 @@
 
 namespace axg {
 namespace {
-
-struct ReplayArguments {
-    MachineOptions machine;
-    GcodeArguments gcode;  // program: empty unless --program
-    std::string trace, engine, mode = "stoppable", csv, frames_out, report, device, lines, plan_of;
-    std::int64_t deadline_us = 0;  // 0: the machine file's
-    std::uint32_t multiprocessors = 0;
-    double within_mm = 50.0;
-    double arm_at_s = -1;  // negative: when it is ready
-    double advice_s = 10;
-    bool keep_going = false, lenient = false, is_realtime = false, has_details = false;
-    JsonOutput json;
-};
 
 std::int64_t steady_ns(void*) {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(
@@ -76,6 +66,7 @@ struct Outputs {
     std::unique_ptr<CandumpWriter> frames;
     std::unique_ptr<PageRecorder> page;
     std::optional<ProgramFinder> program;
+    NearestApproach* approach = nullptr;
 };
 
 Outputs open_outputs(const ReplayArguments& arguments, const LoadedMachine& loaded, Engine engine) {
@@ -95,6 +86,10 @@ Outputs open_outputs(const ReplayArguments& arguments, const LoadedMachine& load
     if (!arguments.gcode.program.empty()) {
         outputs.program.emplace(arguments.gcode, machine, program_settings(loaded.source, machine));
     }
+    if (arguments.approach != nullptr) {
+        outputs.approach = arguments.approach;
+        outputs.approach->begin(loaded, engine, kPageWithinMm);
+    }
     return outputs;
 }
 
@@ -110,6 +105,9 @@ void note_cycle(Outputs& outputs, const ReplayCycle& cycle) {
     }
     if (outputs.program) {
         outputs.program->add(cycle.snapshot);
+    }
+    if (outputs.approach != nullptr) {
+        outputs.approach->note(cycle.snapshot);
     }
 }
 
@@ -129,7 +127,7 @@ bool write_outputs(const ReplayArguments& arguments, const ReplayReport& report,
             print_replay(report, Detail::full, stream);
         };
         const RunPage page{report.loaded,      outputs.page->finish(), &report.run.cycles(),
-                           report.deadline_us, arguments.trace,        printed_text(print),
+                           report.deadline_us, report.trace,           printed_text(print),
                            document.stops,     &report.lines};
         written = write_run_page(arguments.report, page, stderr) && written;
     }
@@ -269,7 +267,9 @@ ReplayOptions run_options_of(const ReplayArguments& arguments, const LoadedMachi
 /// Matched with the program where one was passed, else from the table beside the trace.
 ProgramLines lines_of(const ReplayArguments& arguments, Outputs& outputs) {
     ProgramLines lines;
-    if (outputs.program) {
+    if (arguments.program_lines != nullptr) {
+        lines = *arguments.program_lines;
+    } else if (outputs.program) {
         lines = outputs.program->finish();
     } else if (const std::string note = load_program_lines(arguments.trace, arguments.lines, lines);
                !note.empty()) {
@@ -338,70 +338,8 @@ int replay(const ReplayArguments& arguments, const ReplayObserver& observer) {
     if (!take_plan(arguments, loaded)) {
         return kExitInput;
     }
-    if (is_black_box_file(arguments.trace)) {
-        return replay_dump(arguments, loaded);
-    }
-    if (arguments.is_realtime && arguments.deadline_us != 0) {  // the guard judges by it
-        loaded.machine.deadline_us = static_cast<std::uint32_t>(arguments.deadline_us);
-    }
-    TraceShape shape;
-    const std::unique_ptr<TraceReader> trace = open_shaped(arguments, loaded.machine, shape);
-    if (!trace) {
-        fmt::print(stderr, "{}\n", shape.fault);
-        return write_json(arguments.json, describe_unread(arguments.trace, shape.fault))
-                   ? exit_code_of_unopened(arguments.trace)
-                   : static_cast<int>(kExitInternal);
-    }
-    const bool is_stoppable = arguments.mode == "stoppable";
-    GuardParts parts(loaded, is_stoppable);
-    if (!parts.fault().empty()) {
-        fmt::print(stderr, "{}\n", parts.fault());
-        return kExitUnfit;
-    }
-    CpuEngine& engine = *parts.engine;
-    Outputs outputs = open_outputs(arguments, loaded, engine.engine());
-    if (outputs.program && !outputs.program->open()) {
-        return kExitInput;
-    }
-    const ReplayOptions run_options = run_options_of(arguments, loaded, parts.cycle, outputs);
-    const auto observe = [&outputs](const ReplayCycle& cycle) { note_cycle(outputs, cycle); };
-    CycleDemand demand = cycle_demand(loaded.machine, is_stoppable);
-    demand.times = time_limits(loaded.machine.can, run_options.deadline_us);
-    ChosenEngine chosen =
-        choose_and_report(loaded, engine, arguments.engine, demand, arguments.multiprocessors);
-    if (chosen.refusal != EngineRefusal::none) {
-        return exit_code_of(chosen.refusal);
-    }
-    ReplayRun run(loaded.machine, chosen.engine(engine), *parts.containment_test, run_options,
-                  observe);
-    const TraceEnd end = feed(*trace, run, added_session(shape, loaded.machine.can));
-    if (!end.fault.empty()) {
-        fmt::print(stderr, "{}\n", end.fault);
-    }
-    ProgramLines lines = lines_of(arguments, outputs);
-    const bool gpu_failed = report_if_gave_up(chosen);
-    ReplayReport report{loaded,
-                        engine,
-                        *parts.containment_test,
-                        run,
-                        run_options.deadline_us,
-                        arguments.trace,
-                        chosen.gpu_name(),
-                        arguments.plan_of,
-                        arguments.is_realtime,
-                        end,
-                        std::move(lines),
-                        shape.period};
-    explain_stops(report);
-    advise(arguments, shape, report);
-    print_replay(report, detail_of(arguments.has_details), arguments.json.words());
-    if (observer) {
-        observer(report);
-    }
-    if (!write_outputs(arguments, report, outputs)) {
-        return kExitInternal;
-    }
-    return gpu_failed ? static_cast<int>(kExitGpu) : exit_code_of(report, outputs);
+    return is_black_box_file(arguments.trace) ? replay_dump(arguments, loaded)
+                                              : replay_trace(arguments, loaded, observer);
 }
 
 /// How options about the program of the trace contradict each other; empty: they do not.
@@ -453,6 +391,76 @@ void add_run_options(const Command& command, ReplayArguments& arguments) {
 }
 
 }  // namespace
+
+int replay_trace(const ReplayArguments& arguments, LoadedMachine& loaded,
+                 const ReplayObserver& observer) {
+    if (arguments.is_realtime && arguments.deadline_us != 0) {  // the guard judges by it
+        loaded.machine.deadline_us = static_cast<std::uint32_t>(arguments.deadline_us);
+    }
+    TraceShape shape;
+    const std::unique_ptr<TraceReader> trace = open_shaped(arguments, loaded.machine, shape);
+    if (!trace) {
+        fmt::print(stderr, "{}\n", shape.fault);
+        return write_json(arguments.json, describe_unread(arguments.trace, shape.fault))
+                   ? exit_code_of_unopened(arguments.trace)
+                   : static_cast<int>(kExitInternal);
+    }
+    const bool is_stoppable = arguments.mode == "stoppable";
+    GuardParts parts(loaded, is_stoppable);
+    if (!parts.fault().empty()) {
+        fmt::print(stderr, "{}\n", parts.fault());
+        return kExitUnfit;
+    }
+    CpuEngine& engine = *parts.engine;
+    Outputs outputs = open_outputs(arguments, loaded, engine.engine());
+    if (outputs.program && !outputs.program->open()) {
+        return kExitInput;
+    }
+    const ReplayOptions run_options = run_options_of(arguments, loaded, parts.cycle, outputs);
+    const auto observe = [&outputs](const ReplayCycle& cycle) { note_cycle(outputs, cycle); };
+    CycleDemand demand = cycle_demand(loaded.machine, is_stoppable);
+    demand.times = time_limits(loaded.machine.can, run_options.deadline_us);
+    ChosenEngine chosen =
+        choose_and_report(loaded, engine, arguments.engine, demand, arguments.multiprocessors);
+    if (chosen.refusal != EngineRefusal::none) {
+        return exit_code_of(chosen.refusal);
+    }
+    ReplayRun run(loaded.machine, chosen.engine(engine), *parts.containment_test, run_options,
+                  observe);
+    const TraceEnd end = feed(*trace, run, added_session(shape, loaded.machine.can));
+    if (!end.fault.empty()) {
+        fmt::print(stderr, "{}\n", end.fault);
+    }
+    ProgramLines lines = lines_of(arguments, outputs);
+    const bool gpu_failed = report_if_gave_up(chosen);
+    ReplayReport report{loaded,
+                        engine,
+                        *parts.containment_test,
+                        run,
+                        run_options.deadline_us,
+                        arguments.title.empty() ? arguments.trace : arguments.title,
+                        chosen.gpu_name(),
+                        arguments.plan_of,
+                        arguments.is_realtime,
+                        end,
+                        std::move(lines),
+                        shape.period};
+    explain_stops(report);
+    advise(arguments, shape, report);
+    if (arguments.title.empty()) {
+        print_replay(report, detail_of(arguments.has_details), arguments.json.words());
+    }
+    if (outputs.approach != nullptr) {
+        outputs.approach->finish();
+    }
+    if (observer) {
+        observer(report);
+    }
+    if (!write_outputs(arguments, report, outputs)) {
+        return kExitInternal;
+    }
+    return gpu_failed ? static_cast<int>(kExitGpu) : exit_code_of(report, outputs);
+}
 
 void add_replay(CommandLine& line, const ReplayObserver& observer) {
     auto arguments = std::make_shared<ReplayArguments>();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // axguard simulate: a G-code program as the CAN trace that a motion board would leave.
 // docs/reference/gcode.md.
+#include "hil_replay/commands/simulate_command.hpp"
+
 #include <fmt/format.h>
 
 #include <cstdint>
@@ -63,20 +65,6 @@ void print_summary(std::FILE* out, const SimulateArguments& arguments, const Mac
                      100 * peak.acceleration / axis.acceleration_max,
                      100 * peak.jerk / axis.jerk_max);
     }
-}
-
-SimulationSummary simulate_with_progress(const Machine& machine, const Program& program,
-                                         std::uint32_t line_count, SimulationOptions options,
-                                         const std::string& output) {
-    Progress progress;
-    if (progress.is_terminal()) {
-        options.progress = [&](double program_s, std::uint32_t line) {
-            if (progress.is_due()) {
-                progress.show(program_s, double(line) / line_count, fmt::format("line {}", line));
-            }
-        };
-    }
-    return simulate_trace(machine, program, options, output);
 }
 
 /// Beside a trace that is a file of its own. False: it was not written, and the reason is printed.
@@ -166,6 +154,20 @@ int run_simulate(const SimulateArguments& arguments) {
 }
 
 }  // namespace
+
+SimulationSummary simulate_with_progress(const Machine& machine, const Program& program,
+                                         std::uint32_t line_count, SimulationOptions options,
+                                         const std::string& output) {
+    Progress progress;
+    if (progress.is_terminal()) {
+        options.progress = [&](double program_s, std::uint32_t line) {
+            if (progress.is_due()) {
+                progress.show(program_s, double(line) / line_count, fmt::format("line {}", line));
+            }
+        };
+    }
+    return simulate_trace(machine, program, options, output);
+}
 
 void add_simulate(CommandLine& line) {
     const auto arguments = std::make_shared<SimulateArguments>();

@@ -218,6 +218,10 @@ void add_gcode_options(const Command& command, GcodeArguments& arguments) {
     command.add_input("PROGRAM", arguments.program, "G-code program in LinuxCNC's dialect")
         .required();
     add_gcode_settings(command, arguments);
+    add_samples_limit(command, arguments);
+}
+
+void add_samples_limit(const Command& command, GcodeArguments& arguments) {
     command
         .add_option("--max-samples", arguments.samples_max,
                     "largest number of samples of the motion")

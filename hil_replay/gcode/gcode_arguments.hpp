@@ -23,6 +23,8 @@ struct GcodeArguments {
 };
 
 void add_gcode_options(const Command& command, GcodeArguments& arguments);
+/// Adds only the limit of samples.
+void add_samples_limit(const Command& command, GcodeArguments& arguments);
 /// Adds only the settings for reading, without the program and the limit of samples.
 std::vector<Option> add_gcode_settings(const Command& command, GcodeArguments& arguments);
 

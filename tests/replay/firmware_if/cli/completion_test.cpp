@@ -39,7 +39,7 @@ class Completion : public testing::Test {
 
 TEST_F(Completion, BashProposesCommandsOptionsAndValues) {
     EXPECT_EQ(replies("axguard", "axguard rep"), "replay\n");
-    EXPECT_EQ(replies("axguard", "axguard help sim"), "simulate\n");
+    EXPECT_EQ(replies("axguard", "axguard help ver"), "verify\n");
     EXPECT_EQ(replies("axguard", "axguard replay m.yaml --mod"), "--mode\n");
     EXPECT_EQ(replies("axguard", "axguard replay --mode ''"), "contact stoppable\n");
     EXPECT_EQ(replies("axguard", "axguard replay ''"), "\n") << "file names, by -o default";
