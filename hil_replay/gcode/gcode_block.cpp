@@ -42,8 +42,6 @@ class BlockBuilder {
     void add(const GcodeWord& word) {
         if (word.letter == 'G' || word.letter == 'M') {
             add_code(word);
-        } else if (word.letter == 'D' || word.letter == 'E') {
-            fault(word.text, "not supported (no word that is read takes it)");
         } else {
             auto& slot = block_.letters[static_cast<std::size_t>(word.letter - 'A')];
             if (slot) {
@@ -61,17 +59,20 @@ class BlockBuilder {
         const bool may_be_cycle = motion_code == -1 || is_canned_cycle(motion_code);
         const bool writes_offset = block_.code(non_modal) == 100;
         unused('P',
-               may_be_arc || may_be_cycle || writes_offset || takes_p(block_) ||
-                   block_.code(non_modal) == 40 || block_.code(path) == 640,
-               "G4, G10, G64, arcs, canned cycles, M50 to M53 and M62 to M65 take it");
-        unused('Q', may_be_cycle || block_.code(path) == 640, "G64, G73 and G83 take it");
+               may_be_arc || may_be_cycle || writes_offset || block_.code(non_modal) == 40 ||
+                   block_.code(path) == 640,
+               "G4, G10, G64, arcs, canned cycles, M19, M50 to M53 and M62 to M66 take it");
+        unused('Q', may_be_cycle || block_.code(path) == 640,
+               "G64, G73, G83, M19 and M66 to M68 take it");
+        unused('D', false, "G96 takes it");
+        unused('E', false, "M66 to M68 take it");
         unused('H', block_.code(tool_length) == 430 || block_.code(tool_length) == 434,
                "G43 and G43.4 take it");
-        unused('L', may_be_cycle || writes_offset, "G10 and canned cycles take it");
-        unused('R', may_be_arc || may_be_cycle, "arcs and canned cycles take it");
-        for (const char letter : {'I', 'J', 'K'}) {
-            unused(letter, may_be_arc, "G2 and G3 take it");
-        }
+        unused('L', may_be_cycle || writes_offset, "G10, M66 and canned cycles take it");
+        unused('R', may_be_arc || may_be_cycle, "arcs, canned cycles and M19 take it");
+        unused('I', may_be_arc || motion_code == 331, "G2, G3 and G33.1 take it");
+        unused('J', may_be_arc, "G2 and G3 take it");
+        unused('K', may_be_arc || is_thread(motion_code), "G2, G3, G33 and G33.1 take it");
     }
 
     [[nodiscard]] GcodeBlock take() { return std::move(block_); }
@@ -82,7 +83,7 @@ class BlockBuilder {
     }
 
     void unused(char letter, bool is_taken, const char* who) {
-        if (block_.has(letter) && !is_taken) {
+        if (block_.has(letter) && !is_taken && !is_setting_letter(block_, letter)) {
             fault(std::string(1, letter),
                   std::string("no word of this block takes it (") + who + ")");
         }
@@ -121,6 +122,10 @@ class BlockBuilder {
         std::int32_t& slot = block_.codes[static_cast<std::size_t>(rule->group)];
         const bool is_mist_and_flood =
             rule->group == coolant && slot + code == 150;  // M7 and M8: the only allowed pair
+        if (rule->group == motion && slot >= 0 && (code == 800 || slot == 800)) {
+            slot = code == 800 ? slot : code;  // G80 yields, as in LinuxCNC
+            return;
+        }
         if (slot >= 0 && !is_mist_and_flood) {
             fault(name, "conflicts with " + name_of(word.letter, slot) +
                             " in the same block; write them in two blocks");
@@ -139,6 +144,27 @@ class BlockBuilder {
 bool is_axis_letter(char letter) {
     return std::find(std::begin(kAxisLetters), std::end(kAxisLetters), letter) !=
            std::end(kAxisLetters);
+}
+
+bool is_setting_letter(const GcodeBlock& block, char letter) {
+    const std::int32_t output = block.code(outputs);
+    const bool is_orientation = block.code(spindle) == 190, is_analog = output >= 670;
+    switch (letter) {
+        case 'D':
+            return block.code(spindle_mode) == 960;
+        case 'E':
+            return output >= 660;
+        case 'L':
+            return output == 660;
+        case 'P':
+            return block.code(overrides) >= 500 || (output != -1 && !is_analog) || is_orientation;
+        case 'Q':
+            return output >= 660 || is_orientation;
+        case 'R':
+            return is_orientation;
+        default:
+            return false;
+    }
 }
 
 GcodeBlock make_gcode_block(const GcodeLine& line, std::uint32_t line_number,

@@ -47,10 +47,16 @@ inline constexpr char kAxisLetters[] = {'X', 'Y', 'Z', 'A', 'B', 'C', 'U', 'V', 
 [[nodiscard]] inline bool ends_program(const GcodeBlock& block) {
     return block.code(ModalGroup::stop) == 20 || block.code(ModalGroup::stop) == 300;
 }
-/// M50 to M53 and M62 to M65 use P: on or off, or the number of an output.
-[[nodiscard]] inline bool takes_p(const GcodeBlock& block) {
-    return block.code(ModalGroup::overrides) >= 500 || block.code(ModalGroup::outputs) != -1;
+/// G33, G33.1: lines that follow the spindle.
+[[nodiscard]] constexpr bool is_thread(std::int32_t motion) {
+    return motion == 330 || motion == 331;
 }
+/// G38.2 to G38.5.
+[[nodiscard]] constexpr bool is_probe(std::int32_t motion) {
+    return motion >= 382 && motion <= 385;
+}
+/// Whether a word that moves no axis uses this letter: M19, M50 to M53, M62 to M68, G96.
+[[nodiscard]] bool is_setting_letter(const GcodeBlock& block, char letter);
 /// Words whose axis words are offsets and not targets of a move: G10, G52, G92, G43.1.
 [[nodiscard]] inline bool takes_axis_words(const GcodeBlock& block) {
     const std::int32_t code = block.code(ModalGroup::non_modal);

@@ -38,6 +38,12 @@ void GcodeInterpreter::run_cycle(std::int32_t last_motion, bool has_axis) {
                              : "conflicts with G93; write G94 before it");
         return;
     }
+    if (state_.motion == 840 && state_.plane != 170) {
+        fault(hole.word,
+              "LinuxCNC (2.9, 2.10) feeds along other axes in G18 and G19 than down the "
+              "hole; write G1 in its place");
+        return;
+    }
     if (hole.up == kNoIndex || machine_.axes[hole.up].kind != AxisKind::linear) {
         fault(hole.word, std::string("the machine has no linear axis ") + hole.up_letter);
         return;

@@ -242,6 +242,8 @@ void GcodeFlow::call(const FlowLine& at, std::size_t& next) {
     }
     frames_.push_back({.start = &*found, .return_to = next});
     parameters_.enter(arguments);
+    parameters_.set_named("_VALUE", 0);
+    parameters_.set_named("_VALUE_RETURNED", 0);
     next = found->line + 1;
 }
 

@@ -63,6 +63,7 @@ void GcodeInterpreter::run(const GcodeBlock& block) {
     set_feed_and_tool();
     change_tool();
     dwell();
+    wait_for_input();
     set_modes();
     use_lengths();
     write_offsets();
@@ -92,6 +93,9 @@ void GcodeInterpreter::set_feed_and_tool() {
             state_.feed = feed;
             state_.feed_scale = state_.is_inch ? kMmPerInch : 1.0;
         }
+    }
+    if (block.code(spindle_mode) != -1) {
+        state_.has_surface_speed = block.code(spindle_mode) == 960;
     }
     if (block.has('S')) {
         state_.spindle_rev_min = block.value('S');
@@ -164,6 +168,22 @@ void GcodeInterpreter::dwell() {
         return;
     }
     wait(seconds);
+}
+
+void GcodeInterpreter::wait_for_input() {
+    const GcodeBlock& block = *block_;
+    const std::int32_t code = block.code(outputs);
+    if (code >= 670 && !block.has('E')) {
+        fault(code == 670 ? "M67" : "M68", "expected E, the number of the output");
+    }
+    if (code != 660) {
+        return;
+    }
+    if (block.has('P') == block.has('E')) {
+        fault("M66", "expected P, a digital input, or E, an analog one");
+        return;
+    }
+    wait(0);
 }
 
 void GcodeInterpreter::wait(double seconds) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Converts block after block to canonical moves. Modes and tools: gcode_interpreter.cpp; offsets:
 // gcode_offsets.cpp; tool centre point control: gcode_tip.cpp; motion: gcode_motion.cpp; canned
-// cycles: gcode_cycle.cpp.
+// cycles: gcode_cycle.cpp; threads and probing: gcode_thread.cpp.
 #pragma once
 
 #include <optional>
@@ -50,6 +50,7 @@ class GcodeInterpreter {
     [[nodiscard]] const Tool* find_tool(std::uint16_t number) const;
     void change_tool();
     void dwell();
+    void wait_for_input();
     void set_modes();
     void set_tool_length();
     /// The tool offset after the word `code` (-1: unchanged); if it has none, nothing and a fault.
@@ -68,7 +69,11 @@ class GcodeInterpreter {
     /// The feed of G94 or G95 per minute: mm, or degrees if only rotary axes move. 0 if there is
     /// none, with a fault unless a skipped block may have set it.
     double feed_per_minute(bool moves_linear);
+    /// The speed of the spindle for `word`; 0, and a fault, where none is known.
+    double spindle_speed(const char* word);
     bool set_arc(Move& next);
+    void run_thread();
+    void probe();
     [[nodiscard]] double arc_center(char center_letter, char axis_letter) const;
     /// G28, G30: moves to the words, if any, then the named axes, or all, to the stored position.
     void go_home();

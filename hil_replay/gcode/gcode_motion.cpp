@@ -51,7 +51,10 @@ void GcodeInterpreter::move() {
     }
     const bool has_axis = std::any_of(std::begin(kAxisLetters), std::end(kAxisLetters),
                                       [&](char letter) { return block.has(letter); });
-    const bool has_arc = block.has('I') || block.has('J') || block.has('K') || block.has('R');
+    const bool is_threading = is_thread(state_.motion);
+    const bool has_arc = block.has('J') || (block.has('R') && !is_setting_letter(block, 'R')) ||
+                         (state_.motion != 331 && block.has('I')) ||
+                         (!is_threading && block.has('K'));
     const bool is_arc_mode = state_.motion == 20 || state_.motion == 30;
     if (is_cycle && (written != -1 || has_axis || has_arc)) {
         run_cycle(last_motion, has_axis);
@@ -60,7 +63,8 @@ void GcodeInterpreter::move() {
     // Without a motion word in the block, make_gcode_block does not have the mode to check these.
     const bool takes_words = block.code(path) != -1 || block.code(non_modal) != -1;
     for (const char letter : {'L', 'P', 'Q'}) {
-        const bool is_taken = takes_words || (letter == 'P' && (is_arc_mode || takes_p(block)));
+        const bool is_taken =
+            takes_words || (letter == 'P' && is_arc_mode) || is_setting_letter(block, letter);
         if (block.has(letter) && !is_taken) {
             fault(std::string(1, letter), letter == 'P' ? "only arcs and canned cycles use it here"
                                                         : "only canned cycles use it here");
@@ -76,14 +80,21 @@ void GcodeInterpreter::move() {
         return;
     }
     if (!has_axis && !has_arc) {
+        if (written != -1 && (is_threading || is_probe(written))) {
+            fault(is_threading ? "G33" : "G38", "expected axis words");
+        }
         return;
     }
-    if (block.code(non_modal) == 40) {
-        fault("G4", "conflicts with axis words in the same block; write two blocks");
+    if (block.code(non_modal) == 40 && is_arc_mode) {
+        fault("G4", "conflicts with an arc in the same block; write two blocks");
         return;
     }
     if (state_.motion == 800) {
         fault("G80", "axis words without a motion mode; write G0, G1, G2 or G3");
+        return;
+    }
+    if (is_threading || is_probe(state_.motion)) {
+        is_threading ? run_thread() : probe();
         return;
     }
     Move next = new_move(is_arc_mode ? MoveKind::arc : MoveKind::line);
@@ -264,12 +275,20 @@ double GcodeInterpreter::feed_per_minute(bool moves_linear) {
         }
         return 0;
     }
-    if (state_.is_per_revolution && !(state_.spindle_rev_min > 0)) {
-        fault("G95", "the spindle is off; write S above 0 before a move at feed");
+    return state_.feed * (moves_linear ? state_.feed_scale : 1.0) *
+           (state_.is_per_revolution ? spindle_speed("G95") : 1.0);
+}
+
+double GcodeInterpreter::spindle_speed(const char* word) {
+    if (state_.has_surface_speed) {
+        fault(word, "under G96 the speed of the spindle depends on the radius; write G97 and S");
         return 0;
     }
-    return state_.feed * (moves_linear ? state_.feed_scale : 1.0) *
-           (state_.is_per_revolution ? state_.spindle_rev_min : 1.0);
+    if (!(state_.spindle_rev_min > 0)) {
+        fault(word, "the spindle is off; write S above 0 before a move at feed");
+        return 0;
+    }
+    return state_.spindle_rev_min;
 }
 
 bool GcodeInterpreter::set_arc(Move& next) {

@@ -202,7 +202,10 @@ class Reading {
             result_.ignored.push_back({number, word, printable_line(lines_[at])});
         }
         for (const GcodeAssignment& one : line.assignments) {
-            if (one.index == 0) {
+            if (one.index == 0 && GcodeParameters::is_read_only(one.name)) {
+                fault(at, std::string("#<").append(one.name).append(">"),
+                      "only the control writes this parameter");
+            } else if (one.index == 0) {
                 parameters_.set_named(one.name, one.value);
             } else if (!parameters_.set_numbered(one.index, one.value)) {
                 fault(at, std::string("#").append(std::to_string(one.index)),

@@ -15,8 +15,9 @@ namespace {
 constexpr std::uint32_t kOwnParameters = 30;     // local to a subroutine: #1 to #30
 constexpr std::uint32_t kFirstOfControl = 5061;  // from here on only LinuxCNC itself writes
 constexpr std::uint32_t kFirstPosition = 5420;
-constexpr double kEqual = 1e-4;  // LinuxCNC's tolerance of EQ and NE
-constexpr int kDepthMax = 50;    // brackets within brackets
+constexpr std::uint32_t kDebugComments = 5599;  // whether they are printed
+constexpr double kEqual = 1e-4;                 // LinuxCNC's tolerance of EQ and NE
+constexpr int kDepthMax = 50;                   // brackets within brackets
 constexpr const char* kWantedNumber = "expected a number after the letter, such as 12, -0.5 or .25";
 constexpr double kRadPerDegree = kPi / 180.0;
 
@@ -109,7 +110,9 @@ constexpr std::array kFunctions = {
 }  // namespace
 
 GcodeParameters::GcodeParameters(Live live)
-    : live_(std::move(live)), numbered_(kGcodeParametersMax, 0.0) {}
+    : live_(std::move(live)),
+      numbered_(kGcodeParametersMax, 0.0),
+      global_{{"_VALUE", 0.0}, {"_VALUE_RETURNED", 0.0}} {}
 
 std::optional<double> GcodeParameters::numbered(std::uint32_t index) const {
     if (index < kFirstOfControl) {
@@ -132,11 +135,18 @@ std::optional<double> GcodeParameters::named(const std::string& name) const {
 }
 
 bool GcodeParameters::set_numbered(std::uint32_t index, double value) {
+    if (index == kDebugComments) {
+        return true;  // moves nothing
+    }
     if (index == 0 || index >= kFirstOfControl) {
         return false;
     }
     numbered_[index] = value;
     return true;
+}
+
+bool GcodeParameters::is_read_only(const std::string& name) {
+    return is_of_control(name) || name.starts_with("_INI[") || name.starts_with("_HAL[");
 }
 
 void GcodeParameters::set_named(const std::string& name, double value) {
@@ -284,7 +294,13 @@ std::optional<double> GcodeValueReader::function() {
 }
 
 std::optional<double> GcodeValueReader::exists() {
-    if (!take("[#<")) {
+    if (take("[#") && !rest_.starts_with('<')) {
+        if (!index()) {
+            return std::nullopt;
+        }
+        return take("]") ? std::optional(1.0) : refuse("EXISTS: expected EXISTS[#number]");
+    }
+    if (!take("<")) {
         return refuse("EXISTS: expected EXISTS[#<name>]");
     }
     const std::optional<std::string> asked = name();

@@ -29,6 +29,8 @@ class GcodeParameters {
     /// False: a program may not write this parameter.
     [[nodiscard]] bool set_numbered(std::uint32_t index, double value);
     void set_named(const std::string& name, double value);
+    /// Names that only the control sets, such as "_LINE" and "_INI[...".
+    [[nodiscard]] static bool is_read_only(const std::string& name);
 
     /// Begins a call: #1 to #30 are the arguments, the rest of them 0; local names (without a
     /// leading '_') are undefined.

@@ -7,21 +7,16 @@ namespace {
 using enum ModalGroup;
 using enum WordSupport;
 
-constexpr std::string_view kByHand =
-    "boring with a stop by hand: where it ends is up to the operator";
-constexpr std::string_view kCompensation =
-    "cutter compensation; let the CAM system write the tool centre's path";
-constexpr std::string_view kProbe = "probing: where it ends is known on the machine only";
-constexpr std::string_view kSpindleSync = "moves with the spindle's angle, which is not simulated";
+constexpr std::string_view kByHand = "boring that an operator ends by hand";
+constexpr std::string_view kCompensation = "cutter compensation; post the tool centre's path";
+constexpr std::string_view kProbe = "probing, read to its end";
 constexpr std::string_view kSpline = "spline; post it as lines or arcs";
-constexpr std::string_view kHomeWrite = "writes a home position; write G53 G0 with its position";
+constexpr std::string_view kHomeWrite = "stores a position; use G53 G0";
 
 constexpr std::string_view kLathe = "roughing cycle of a lathe";
 constexpr std::string_view kModalState =
     "saves or restores modes; write the words of those modes in their place";
 constexpr std::string_view kFanucCall = "Fanuc's subprograms; write O<name> sub and call";
-constexpr std::string_view kAnalogOutput =
-    "analog output: what it does to the machine is not known here; leave it out";
 
 constexpr GcodeWordRule kRules[] = {
     {'G', 0, motion, read, "rapid"},
@@ -33,6 +28,7 @@ constexpr GcodeWordRule kRules[] = {
     {'G', 51, motion, refused, kSpline},
     {'G', 52, motion, refused, kSpline},
     {'G', 53, motion, refused, kSpline},
+    {'G', 62, motion, refused, "NURBS; post it as lines or arcs"},
     {'G', 70, count, refused, "lathe diameter mode"},
     {'G', 80, count, no_motion, "lathe radius mode: nothing to change"},
     {'G', 100, non_modal, read, "L2, L20: writes a work offset"},
@@ -48,12 +44,12 @@ constexpr GcodeWordRule kRules[] = {
     {'G', 281, non_modal, refused, kHomeWrite},
     {'G', 300, non_modal, read, "to the second stored position"},
     {'G', 301, non_modal, refused, kHomeWrite},
-    {'G', 330, motion, refused, kSpindleSync},
-    {'G', 331, motion, refused, kSpindleSync},
-    {'G', 382, motion, refused, kProbe},
-    {'G', 383, motion, refused, kProbe},
-    {'G', 384, motion, refused, kProbe},
-    {'G', 385, motion, refused, kProbe},
+    {'G', 330, motion, read, "line at K each revolution of the spindle, at S"},
+    {'G', 331, motion, read, "rigid tapping: there and back, turning round at the end"},
+    {'G', 382, motion, read, kProbe},
+    {'G', 383, motion, read, kProbe},
+    {'G', 384, motion, read, kProbe},
+    {'G', 385, motion, read, kProbe},
     {'G', 400, cutter, no_motion, "cutter compensation off: it is never on"},
     {'G', 410, cutter, refused, kCompensation},
     {'G', 411, cutter, refused, kCompensation},
@@ -87,7 +83,7 @@ constexpr GcodeWordRule kRules[] = {
     {'G', 722, motion, refused, kLathe},
     {'G', 730, motion, read, "drilling with chip breaking"},
     {'G', 740, motion, refused, "left-hand tapping; G84 moves alike"},
-    {'G', 760, motion, refused, kSpindleSync},
+    {'G', 760, motion, refused, "threading cycle of a lathe"},
     {'G', 800, motion, read, "motion mode off"},
     {'G', 810, motion, read, "drilling"},
     {'G', 820, motion, read, "drilling with dwell"},
@@ -109,7 +105,7 @@ constexpr GcodeWordRule kRules[] = {
     {'G', 930, feed_mode, read, "inverse time"},
     {'G', 940, feed_mode, read, "units per minute"},
     {'G', 950, feed_mode, read, "units per revolution of the spindle, at S"},
-    {'G', 960, spindle_mode, refused, "constant surface speed: the spindle is not simulated"},
+    {'G', 960, spindle_mode, no_motion, "constant surface speed; refused with G95 and G33"},
     {'G', 970, spindle_mode, no_motion, "constant spindle speed"},
     {'G', 980, retract, read, "cycles end at the height before the first of them"},
     {'G', 990, retract, read, "cycles end at R"},
@@ -123,13 +119,13 @@ constexpr GcodeWordRule kRules[] = {
     {'M', 70, coolant, no_motion, "mist"},
     {'M', 80, coolant, no_motion, "flood"},
     {'M', 90, coolant, no_motion, "coolant off"},
-    {'M', 190, spindle, refused, "spindle orientation: the spindle is not simulated"},
+    {'M', 190, spindle, no_motion, "spindle orientation"},
     {'M', 300, stop, read, "end of program"},
     {'M', 480, overrides, no_motion, "overrides on: 100 % is simulated"},
     {'M', 490, overrides, no_motion, "overrides off"},
     {'M', 500, overrides, no_motion, "feed override: 100 % is simulated"},
     {'M', 510, overrides, no_motion, "spindle override"},
-    {'M', 520, overrides, refused, "adaptive feed: how fast is known on the machine only"},
+    {'M', 520, overrides, refused, "adaptive feed: unknown speed"},
     {'M', 530, overrides, no_motion, "feed stop: nobody presses it"},
     {'M', 600, stop, refused, "pallet change"},
     {'M', 610, count, refused, "sets the tool number; write Tn M6"},
@@ -137,9 +133,9 @@ constexpr GcodeWordRule kRules[] = {
     {'M', 630, outputs, no_motion, "digital output off, with motion"},
     {'M', 640, outputs, no_motion, "digital output on"},
     {'M', 650, outputs, no_motion, "digital output off"},
-    {'M', 660, outputs, refused, "waits for an input: when it comes is known on the machine only"},
-    {'M', 670, outputs, refused, kAnalogOutput},
-    {'M', 680, outputs, refused, kAnalogOutput},
+    {'M', 660, outputs, read, "waits for an input: the axes come to rest"},
+    {'M', 670, outputs, no_motion, "analog output, with motion"},
+    {'M', 680, outputs, no_motion, "analog output"},
     {'M', 700, count, refused, kModalState},
     {'M', 710, count, refused, kModalState},
     {'M', 720, count, refused, kModalState},

@@ -12,7 +12,7 @@ namespace axg {
 /// A block may contain one word of each group. Source: LinuxCNC "G-code overview", modal groups.
 enum class ModalGroup : std::uint8_t {
     non_modal,     // G4 G10 G28 G52 G53 G92
-    motion,        // G0..G3 G73 G80..G89
+    motion,        // G0..G3 G33 G38 G73 G80..G89
     plane,         // G17..G19
     distance,      // G90 G91
     arc_distance,  // G90.1 G91.1
@@ -23,14 +23,14 @@ enum class ModalGroup : std::uint8_t {
     offsets,       // G54..G59.3
     path,          // G61 G64
     retract,       // G98 G99
-    spindle_mode,  // G97
+    spindle_mode,  // G96 G97
     stop,          // M0 M1 M2 M30
     tool_change,   // M6
-    spindle,       // M3 M4 M5
+    spindle,       // M3 M4 M5 M19
     coolant,       // M7 M8 M9: M7 and M8 may share a block
     overrides,     // M48 M49 M50 M51 M53
     kinematics,    // M428 M429
-    outputs,       // M62 M63 M64 M65
+    outputs,       // M62 to M68
     count,
 };
 inline constexpr std::size_t kModalGroups = static_cast<std::size_t>(ModalGroup::count);

@@ -50,6 +50,7 @@ TEST(GcodeCycle, EachDrillsItsHole) {
     EXPECT_EQ(steps_of("G81 X1 Z-5 R3"), then({{'r', 1, 3}}));
     EXPECT_EQ(steps_of("G82 X1 Z-5 R3 P0.5"), then({{'d', 0.5, 0}, {'r', 1, 3}}));
     EXPECT_EQ(steps_of("G84 X1 Z-5 R3"), then({{'d', 0, 0}, {'f', 1, 3}}));
+    EXPECT_NE(fault_of("F9 G18 G84 X1 Y-5 R3\n").find("G84: LinuxCNC"), std::string::npos);
     EXPECT_EQ(steps_of("G98 G85 X1 Z-5 R3"), then({{'f', 1, 3}, {'r', 1, 20}}));
     EXPECT_EQ(steps_of("G86 X1 Z-5 R3 P1"), then({{'d', 1, 0}, {'r', 1, 3}}));
     EXPECT_EQ(steps_of("G98 G89 X1 Z-5 R3 P1"), then({{'d', 1, 0}, {'f', 1, 20}}));

@@ -42,6 +42,20 @@ TEST(GcodeValues, WrongOnesSayWhat) {
                  "more than 50 nested brackets");
 }
 
+TEST(GcodeValues, NamesOfTheControlAreItsOwn) {
+    EXPECT_EQ(end_of("G0 X[1 + #<_value> + #<_value_returned>]\n")[kX], 1);
+    EXPECT_EQ(end_of("o1 sub\no1 endsub [3]\no2 sub\nG0 X[1 + #<_value>]\no2 endsub\n"
+                     "o1 call\no2 call\n")[kX],
+              1)
+        << "a call begins with none";
+    EXPECT_EQ(end_of("G0 X[exists[#1] + exists[#5601] + exists[#<_value>]]\n")[kX], 3);
+    expect_fault("G0 X[exists[#5602]]\n", "expected a parameter from 1 to 5601");
+    expect_fault("G0 X[exists[#1 + 1]]\n", "expected EXISTS[#number]");
+    expect_fault("#<_line>=1\n", "#<_LINE>: only the control writes this parameter");
+    expect_fault("#<_ini[a]b>=1\n", "#<_INI[A]B>: only the control writes this parameter");
+    EXPECT_EQ(end_of("#5599=0\nG0 X1\n")[kX], 1);
+}
+
 TEST(GcodeFlow, WrongOnesSayWhatAndEndTheReading) {
     expect_fault("o1 call\nG0 X1\n", "there is no O1 sub in this file");
     expect_fault("o1 sub\nG0 X1\n", "there is no O1 endsub");

@@ -133,13 +133,17 @@ TEST(GcodeFeed, MissingOrWrongIsAnError) {
     EXPECT_EQ(program_of("G0 X1\n").moves[0].feed_kind, FeedKind::rapid);
 }
 
-TEST(GcodeDwell, TakesSecondsAndNoAxes) {
+TEST(GcodeDwell, TakesSecondsBeforeTheMoveOfItsBlock) {
     const Program program = program_of("G4 P1.5\n");
     EXPECT_EQ(program.moves[0].kind, MoveKind::dwell);
     EXPECT_EQ(program.moves[0].dwell_s, 1.5);
     EXPECT_NE(fault_of("G4\n").find("G4: expected P"), std::string::npos);
     EXPECT_NE(fault_of("G4 P-1\n").find("P: found -1"), std::string::npos);
-    EXPECT_NE(fault_of("G0 X1\nG4 P1 X2\n").find("G4: conflicts with axis words"),
+    const Program moving = program_of("G0 X1\nG4 P1 X2\n");
+    ASSERT_EQ(moving.moves.size(), 3U);
+    EXPECT_EQ(moving.moves[1].dwell_s, 1);
+    EXPECT_EQ(moving.moves[2].target[kX], 2);
+    EXPECT_NE(fault_of("G0 X1\nF9 G2 I2\nG4 P1 X2 I1\n").find("G4: conflicts with an arc"),
               std::string::npos);
 }
 
@@ -380,7 +384,8 @@ TEST(GcodeModes, ConflictsInOneBlockAreErrors) {
               std::string::npos);
     EXPECT_NE(fault_of("G0 X1\nX2 P3\n").find("P: only arcs and canned cycles use it here"),
               std::string::npos);
-    EXPECT_NE(fault_of("G0 X1 D1\n").find("D1: not supported"), std::string::npos);
+    EXPECT_NE(fault_of("G0 X1 D1\n").find("D: no word of this block takes it (G96"),
+              std::string::npos);
     EXPECT_NE(fault_of("G0 B1\n").find("B: the machine has no axis"), std::string::npos);
 }
 

@@ -18,11 +18,11 @@ namespace {
 
 /// LinuxCNC 2.9, "G-code Quick Reference", "M-codes"; ten times the number.
 constexpr std::int32_t kLinuxcncG[] = {
-    0,   10,  20,  30,  40,  50,  51,  52,  53,  70,  80,  100, 170, 171, 180, 181, 190, 191,
-    200, 210, 280, 281, 300, 301, 330, 331, 382, 383, 384, 385, 400, 410, 411, 420, 421, 430,
-    431, 432, 490, 520, 530, 540, 550, 560, 570, 580, 590, 591, 592, 593, 610, 611, 640, 700,
-    710, 711, 712, 720, 721, 722, 730, 740, 760, 800, 810, 820, 830, 840, 850, 860, 870, 880,
-    890, 900, 901, 910, 911, 920, 921, 922, 923, 930, 940, 950, 960, 970, 980, 990,
+    0,   10,  20,  30,  40,  50,  51,  52,  53,  62,  70,  80,  100, 170, 171, 180, 181, 190,
+    191, 200, 210, 280, 281, 300, 301, 330, 331, 382, 383, 384, 385, 400, 410, 411, 420, 421,
+    430, 431, 432, 490, 520, 530, 540, 550, 560, 570, 580, 590, 591, 592, 593, 610, 611, 640,
+    700, 710, 711, 712, 720, 721, 722, 730, 740, 760, 800, 810, 820, 830, 840, 850, 860, 870,
+    880, 890, 900, 901, 910, 911, 920, 921, 922, 923, 930, 940, 950, 960, 970, 980, 990,
 };
 constexpr std::int32_t kLinuxcncM[] = {
     0,   10,  20,  30,  40,  50,  60,  70,  80,  90,  190, 300, 480, 490, 500, 510, 520,
@@ -72,6 +72,69 @@ TEST(GcodeWords, WhatMovesNothingMayHaveItsLetters) {
     EXPECT_NE(fault_of("G1 F9 M8 P1 X1\n").find("P: no word of this block takes it"),
               std::string::npos);
     EXPECT_NE(fault_of("M62 M63 P1\n").find("M63: conflicts with M62"), std::string::npos);
+}
+
+TEST(GcodeWords, SettingsOfSpindleAndOutputsTakeTheirOwnLetters) {
+    EXPECT_TRUE(program_of("M19 R90 P1 Q2\nM67 E0 Q5\nM68 E1 Q0\nG96 D2500 S90\n").moves.empty());
+    EXPECT_NE(fault_of("M3 R90\n").find("R"), std::string::npos);
+    EXPECT_NE(fault_of("M62 P1 E1\n").find("E: no word of this block takes it (M66"),
+              std::string::npos);
+    EXPECT_EQ(fault_of("M67 Q5\n"), "1: M67: expected E, the number of the output\n");
+    EXPECT_EQ(program_of("M66 P0 L3 Q2\nM66 E1 L0\n").moves.size(), 2U) << "the axes stand";
+    EXPECT_EQ(fault_of("M66 L3 Q2\n"),
+              "1: M66: expected P, a digital input, or E, an analog one\n");
+    EXPECT_NE(fault_of("G96 S90 G95 F1 G1 X1\n").find("G95: under G96 the speed"),
+              std::string::npos);
+    EXPECT_EQ(program_of("G96 S90\nG97 S5 G95 F2 G1 X1\n").moves[0].feed, 10);
+    EXPECT_EQ(fault_of("G6.2 X1\n"), "1: G6.2: not supported (NURBS; post it as lines or arcs)\n");
+}
+
+TEST(GcodeWords, CancellingAMotionYieldsToOneOfTheSameBlock) {
+    EXPECT_EQ(program_of("G80 G0 X1\nG0 G80 X2\n").moves.size(), 2U);
+    EXPECT_NE(fault_of("G80 G0 G1 X1\n").find("G1: conflicts with G0"), std::string::npos);
+}
+
+TEST(GcodeThreads, KeepPaceWithTheSpindle) {
+    const Program program = program_of("S100 G0 X3\nG33 Z-10 K1.5\nM8\nZ-20 K2\n");
+    ASSERT_EQ(program.moves.size(), 3U);
+    EXPECT_EQ(program.moves[1].feed, 150);
+    EXPECT_EQ(program.moves[2].feed, 200);
+    EXPECT_EQ(program.moves[2].target[kZ], -20);
+    EXPECT_EQ(program_of("G20 S100\nG33 Z-1 K0.1\n").moves[0].feed, 254);
+    EXPECT_NE(fault_of("S9 G33 Z-1\n").find("G33: expected K"), std::string::npos);
+    EXPECT_NE(fault_of("G33 Z-1 K1\n").find("G33: the spindle is off"), std::string::npos);
+    EXPECT_NE(fault_of("S9 G33 K1\n").find("G33: expected axis words"), std::string::npos);
+    EXPECT_NE(fault_of("S9 G93 G33 Z-1 K1 F1\n").find("G33: conflicts with G93"),
+              std::string::npos);
+    EXPECT_NE(fault_of("S9 G33 Z-1 K1 I2\n").find("I: no word of this block takes it"),
+              std::string::npos);
+}
+
+TEST(GcodeThreads, RigidTappingReturnsToItsStart) {
+    const GcodeResult result = read("S100 G0 X3\nG33.1 Z-10 K1 I2\nG0 X4\nM2\n");
+    ASSERT_EQ(result.program.moves.size(), 4U) << faults_of(result);
+    EXPECT_EQ(result.program.moves[1].target[kZ], -10);
+    EXPECT_TRUE(result.program.moves[1].is_exact);
+    EXPECT_EQ(result.program.moves[2].target[kZ], 0);
+    EXPECT_EQ(result.program.moves[2].feed, 100);
+    EXPECT_EQ(result.program.moves[3].target[kX], 4);
+    EXPECT_EQ(read_as_text(result.read_as), "read as: starts in mm; G33.1 turns round at its end");
+}
+
+TEST(GcodeProbe, IsReadToItsEndAndSaysSo) {
+    const GcodeResult result = read("G21\nF100\nG38.2 Z-10\nG38.3 X5\nM2\n");
+    ASSERT_EQ(result.program.moves.size(), 2U) << faults_of(result);
+    EXPECT_EQ(result.program.moves[0].target[kZ], -10);
+    EXPECT_EQ(result.program.moves[1].target[kX], 5);
+    EXPECT_EQ(read_as_text(result.read_as),
+              "read as: G38.2 touches nothing; G38.3 touches nothing");
+    EXPECT_NE(fault_of("F9 G38.2\n").find("G38: expected axis words"), std::string::npos);
+    EXPECT_NE(fault_of("F9 G38.2 Z-1 A5\n").find("G38.2: A: no rotary axis"), std::string::npos);
+    EXPECT_NE(fault_of("F9 G38.2 Z-0.253\n").find("nearer than 0.254 mm"), std::string::npos);
+    EXPECT_EQ(program_of("F9 G38.2 Z-0.255\n").moves.size(), 1U);
+    EXPECT_NE(fault_of("G93 F9 G38.2 Z-1\n").find("conflicts with G93"), std::string::npos);
+    EXPECT_NE(fault_of("F9 G38.2 Z-1\nG0 Z#5063\n").find("#5063: not available"),
+              std::string::npos);
 }
 
 TEST(GcodeWords, ProgramsOfOtherControlsSayWhichOnce) {
