@@ -48,6 +48,10 @@ void GcodeInterpreter::run_cycle(std::int32_t last_motion, bool has_axis) {
         fault(hole.word, std::string("the machine has no linear axis ") + hole.up_letter);
         return;
     }
+    if (is_rotated() && state_.plane != 170) {
+        refuse_rotated(hole.word);
+        return;
+    }
     if (!read_letters(hole, last_motion == state_.motion) || !read_hole(hole)) {
         return;
     }
@@ -115,6 +119,15 @@ bool GcodeInterpreter::read_hole(Hole& hole) {
         const double value = word_value(letter, machine_.axes[axis]);
         hole.step[axis] = state_.is_incremental ? value : 0;
         hole.at[axis] = state_.is_incremental ? hole.at[axis] : value + offset_of(axis);
+    }
+    if (is_rotated()) {
+        const double height_mm = hole.at[hole.up];
+        if (state_.is_incremental) {
+            rotate(hole.step);
+        } else {
+            set_rotated_target(hole.at);
+        }
+        hole.at[hole.up] = height_mm;
     }
     // G91: R counts from the height before the row of cycles, the bottom from R.
     const double start_mm = cycle.is_in_row ? cycle.first_height_mm : state_.position[hole.up];

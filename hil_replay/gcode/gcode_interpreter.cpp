@@ -55,7 +55,7 @@ std::optional<double> GcodeInterpreter::parameter(std::uint32_t index) const {
         return 0.0;
     }
     const bool is_rotary = machine_.axes[axis].kind == AxisKind::rotary;
-    return (state_.position[axis] - offset_of(axis)) / (is_rotary ? kPi / 180.0 : scale());
+    return programmed_position()[axis] / (is_rotary ? kPi / 180.0 : scale());
 }
 
 void GcodeInterpreter::run(const GcodeBlock& block) {
@@ -64,9 +64,11 @@ void GcodeInterpreter::run(const GcodeBlock& block) {
     change_tool();
     dwell();
     wait_for_input();
+    const double rotation_before_rad = rotation_rad();
     set_modes();
     use_lengths();
     write_offsets();
+    check_rotation(rotation_before_rad);
     forget_words();
     move();
     stop();
@@ -205,6 +207,9 @@ void GcodeInterpreter::set_modes() {
     if (const std::int32_t code = block.code(offsets); code != -1) {
         state_.work_offset =
             static_cast<std::size_t>(code <= 590 ? (code - 540) / 10 : 5 + (code - 590));
+    }
+    if (is_rotated() && state_.control != kNoIndex) {
+        refuse_rotated("tool centre point control");
     }
     if (const std::int32_t code = block.code(path); code != -1) {
         state_.is_exact = code != 640;

@@ -64,6 +64,19 @@ class GcodeInterpreter {
     std::uint32_t named_axis(char letter);
     /// Sum of the offsets of this axis: work offset, G52 or G92, tool offset.
     [[nodiscard]] double offset_of(std::uint32_t axis) const;
+    [[nodiscard]] double rotation_rad() const { return state_.rotations_rad[state_.work_offset]; }
+    [[nodiscard]] bool is_rotated() const { return rotation_rad() != 0; }
+    /// Turns X and Y of a vector by the active work offset's angle, or back.
+    void rotate(AxisPositions& vector, bool is_back = false) const;
+    /// The position in the program's coordinates: without offsets and rotation.
+    [[nodiscard]] AxisPositions programmed_position() const;
+    [[nodiscard]] AxisPositions from_program(const AxisPositions& programmed) const;
+    /// Takes X and Y of the block into a rotated target.
+    void set_rotated_target(AxisPositions& target);
+    /// What LinuxCNC does where the angle changes under G92 is a fault.
+    void check_rotation(double rad_before);
+    /// A fault, for what LinuxCNC does in a rotated work offset is not read.
+    void refuse_rotated(const std::string& word);
     bool set_target(AxisPositions& target);
     bool set_feed(Move& next);
     /// The feed of G94 or G95 per minute: mm, or degrees if only rotary axes move. 0 if there is

@@ -127,6 +127,7 @@ bool GcodeInterpreter::set_target(AxisPositions& target) {
             keep_word(index, target[index]);
         }
     }
+    set_rotated_target(target);
     if (state_.motion != 20 && state_.motion != 30) {  // an arc judges its ends together
         settle(target);
     }
@@ -319,6 +320,10 @@ bool GcodeInterpreter::set_arc(Move& next) {
                                : "expected R, or the centre as I J K of the plane");
         return false;
     }
+    if (state_.plane != 170 && is_rotated()) {
+        refuse_rotated(word);
+        return false;
+    }
     if (state_.standing_at) {
         fault(word,
               "the tool offset changed under tool centre point control, and the arc would not "
@@ -334,6 +339,15 @@ bool GcodeInterpreter::set_arc(Move& next) {
     words.radius = block_->value('R') * scale();
     words.center_first = arc_center(plane_letters.center_first, plane_letters.first);
     words.center_second = arc_center(plane_letters.center_second, plane_letters.second);
+    if (is_rotated()) {
+        AxisPositions center =
+            state_.has_absolute_centers ? AxisPositions{} : programmed_position();
+        center[next.arc.first] += block_->value(plane_letters.center_first) * scale();
+        center[next.arc.second] += block_->value(plane_letters.center_second) * scale();
+        center = from_program(center);
+        words.center_first = center[next.arc.first];
+        words.center_second = center[next.arc.second];
+    }
     words.is_clockwise = state_.motion == 20;
     words.tolerance_mm = state_.is_inch ? options_.program.arc_tolerance_inch * scale()
                                         : options_.program.arc_tolerance_mm;
@@ -367,6 +381,10 @@ double GcodeInterpreter::arc_center(char center_letter, char axis_letter) const 
 }
 
 void GcodeInterpreter::go_home() {
+    if (is_rotated() && block_->has('X') != block_->has('Y')) {
+        refuse_rotated("G28 of one of X and Y");  // LinuxCNC keeps the other as programmed
+        return;
+    }
     Move way = new_move(MoveKind::line);
     way.is_exact = true;
     if (!set_target(way.target)) {

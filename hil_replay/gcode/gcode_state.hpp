@@ -41,6 +41,7 @@ struct GcodeState {
     double blend_mm = -1;            // G64 P; negative: the planner's default
     std::size_t work_offset = 0;
     std::array<AxisPositions, kWorkOffsets> work_offsets{};  // mm or rad
+    std::array<double, kWorkOffsets> rotations_rad{};        // G10 L2 R: of X and Y about Z
     AxisPositions local_offset{}, kept_local_offset{};       // G52, G92; the second is for G92.3
     bool retracts_to_r = true;                               // G99, LinuxCNC's default; false: G98
     CycleState cycle;

@@ -4,6 +4,8 @@
 // (oracle/rs274_test.py).
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <vector>
 
 #include "tests/support/gcode_text.hpp"
@@ -113,6 +115,50 @@ TEST(GcodeOffsetWords, MoveTheZeroAndNotTheMachine) {
     EXPECT_NE(fault_of("G10 L2 X1\n").find("G10: expected P from 1"), std::string::npos);
     EXPECT_NE(fault_of("G92\n").find("G92: expected axis words"), std::string::npos);
     EXPECT_NE(fault_of("G92 B1\n").find("B: the machine has no axis"), std::string::npos);
+}
+
+TEST(GcodeRotation, TurnsXAndYOfTheProgramAboutTheOffset) {
+    const auto at = [](const char* text) {
+        const AxisPositions end = end_of(std::string("G10 L2 P1 X10 R90\n") + text);
+        return std::array<long, 2>{std::lround(end[kX] * 1000), std::lround(end[kY] * 1000)};
+    };
+    using To = std::array<long, 2>;
+    EXPECT_EQ(at("G0 X5 Y1\n"), (To{9000, 5000}));
+    EXPECT_EQ(at("G0 X5 Y1\nY2\n"), (To{8000, 5000})) << "X keeps its programmed position";
+    EXPECT_EQ(at("G0 X5 Y1\nG91 X1\n"), (To{9000, 6000}));
+    EXPECT_EQ(at("G0 X5 Y1\nG53 G0 X3\n"), (To{3000, 5000}));
+    EXPECT_EQ(at("G0 X5 Y1\nX[#5420 + 1] Y#5421\n"), (To{9000, 6000}));
+    EXPECT_EQ(at("G0 X5 Y1\nG92 X0\nG0 X1\n"), (To{9000, 6000})) << "G92 counts as programmed";
+    EXPECT_EQ(at("G52 X1\nG10 L2 P1 R90\nG0 X4 Y1\n"), (To{9000, 5000})) << "the same angle";
+    EXPECT_EQ(at("G43.1 X2\nG0 X5 Y1\n"), (To{11000, 5000})) << "a tool does not turn";
+    EXPECT_EQ(at("G10 L2 P1 R0\nG0 X5 Y1\n"), (To{15000, 1000}));
+    EXPECT_EQ(at("G55 G0 X5 Y1\n"), (To{5000, 1000}));
+    EXPECT_EQ(at("F9 G81 X5 Y1 Z-5 R0\n"), (To{9000, 5000}));
+    EXPECT_EQ(at("F9 G0 X5 Y1\nG91 G81 X1 Z-5 R0 L2\n"), (To{9000, 7000}));
+}
+
+TEST(GcodeRotation, TurnsTheCentresOfArcs) {
+    for (const char* const words : {"I2", "G90.1 I2 J0", "X4 R2", "X4 I2"}) {
+        const Program program =
+            program_of(std::string("G10 L2 P1 R90\nG0 X0 Y0 F9\nG2 ") + words + "\n");
+        EXPECT_NEAR(program.moves.back().arc.center_first_mm, 0, 1e-12) << words;
+        EXPECT_NEAR(program.moves.back().arc.center_second_mm, 2, 1e-12) << words;
+    }
+}
+
+TEST(GcodeRotation, WhatLinuxcncDoesOtherwiseIsRefused) {
+    const auto expect = [](const char* text, const char* what) {
+        const std::string fault = fault_of(std::string("F9 G10 L2 P1 R90\nG0 X1 Y2\n") + text);
+        EXPECT_NE(fault.find(what), std::string::npos) << fault;
+    };
+    expect("G10 L20 P1 X0\n", "L20 with a rotated work offset");
+    expect("G10 L20 P2 R5\n", "L20 with a rotated work offset");
+    expect("G18 G2 I1\n", "G2: not supported in a rotated work offset");
+    expect("G18 G81 X1 Y-1 R0\n", "G81: not supported in a rotated work offset");
+    expect("G28 X0\n", "G28 of one of X and Y: not supported in a rotated work offset");
+    expect("G43.4\n", "tool centre point control: not supported in a rotated work offset");
+    expect("G52 X1\nG10 L2 P1 R80\n", "G10: the rotation of X and Y changes under G92");
+    expect("G52 X1\nG55\n", "G54: the rotation of X and Y changes under G92");
 }
 
 }  // namespace
