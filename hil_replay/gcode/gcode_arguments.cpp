@@ -80,6 +80,7 @@ bool make_gcode_options(const GcodeArguments& arguments, const Machine& machine,
     options.samples_max = arguments.samples_max;
     options.sample_us = machine.can.sample_us;
     options.ignored = arguments.ignored;
+    options.sub_folders = arguments.subs;
     options.part = arguments.part;
     for (std::string& word : options.ignored) {
         for (char& c : word) {
@@ -181,6 +182,11 @@ std::vector<Option> add_gcode_settings(const Command& command, GcodeArguments& a
             .add_option("--tool", arguments.tools,
                         "PROGRAM=MACHINE: map a tool number of the program to one of the machine "
                         "file, such as 150=1; repeatable")
+            .repeatable(),
+        command
+            .add_option("--sub", arguments.subs,
+                        "folder of subroutines in files of their own: O<name> call reads name.ngc; "
+                        "repeatable")
             .repeatable(),
         command
             .add_option("--ignore", arguments.ignored,

@@ -17,7 +17,7 @@ class Option;
 
 struct GcodeArguments {
     std::string program, start, part, block_delete = "refuse", rotary;
-    std::vector<std::string> work_offsets, tools, ignored;
+    std::vector<std::string> work_offsets, tools, subs, ignored;
     std::size_t faults_max = GcodeOptions{}.faults_max, moves_max = GcodeOptions{}.moves_max;
     std::uint64_t lines_max = GcodeOptions{}.steps_max, samples_max = GcodeOptions{}.samples_max;
 };

@@ -54,6 +54,14 @@ class BlockBuilder {
 
     /// Reports letters that no word of the block uses: they may be typing errors.
     void check_letters() {
+        const bool is_skipped =
+            !block_.ignored.empty() && std::all_of(block_.codes.begin(), block_.codes.end(),
+                                                   [](std::int32_t code) { return code == -1; });
+        for (const char letter : {'D', 'E', 'H', 'I', 'J', 'K', 'L', 'P', 'Q', 'R'}) {
+            if (is_skipped && block_.has(letter)) {
+                block_.letters[static_cast<std::size_t>(letter - 'A')].reset();
+            }
+        }
         const std::int32_t motion_code = block_.code(motion);
         const bool may_be_arc = motion_code == -1 || motion_code == 20 || motion_code == 30;
         const bool may_be_cycle = motion_code == -1 || is_canned_cycle(motion_code);
@@ -114,6 +122,10 @@ class BlockBuilder {
         }
         if (code == 530 && word.letter == 'G') {
             block_.is_machine = true;
+            return;
+        }
+        if (word.letter == 'M' && (code == 980 || code == 990)) {
+            fault(name, "has to begin its line");
             return;
         }
         if (rule->group == count) {

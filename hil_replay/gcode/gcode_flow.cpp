@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "hil_replay/gcode/gcode_lexer.hpp"
@@ -13,6 +15,7 @@ namespace axg {
 namespace {
 
 using enum FlowWord;
+using std::string_view_literals::operator""sv;
 
 constexpr std::size_t kFramesMax = 100;
 
@@ -29,7 +32,7 @@ constexpr std::array kWords = {
 std::string flow_text(std::string_view line) {
     const std::size_t first = line.find_first_not_of(" \t\r/");
     if (first == std::string_view::npos ||
-        std::string_view("oOnN").find(line[first]) == std::string_view::npos) {
+        std::string_view("oOnNmM").find(line[first]) == std::string_view::npos) {
         return {};
     }
     GcodeLine fault;
@@ -41,7 +44,13 @@ std::string flow_text(std::string_view line) {
     if (at != std::string::npos && text[at] == 'N') {
         at = text.find_first_not_of("0123456789.", at + 1);
     }
-    return at != std::string::npos && text[at] == 'O' ? text.substr(at) : std::string();
+    if (at == std::string::npos) {
+        return {};
+    }
+    text.erase(0, at);
+    const bool is_call = (text.starts_with("M98") || text.starts_with("M99")) &&
+                         (text.size() == 3 || "0123456789.+-"sv.find(text[3]) == std::string::npos);
+    return text[0] == 'O' || is_call ? text : std::string();
 }
 
 /// Reads one O-line. On failure returns nothing and sets `fault`.
@@ -49,6 +58,15 @@ std::optional<FlowLine> read_flow_line(std::size_t line, std::string_view text,
                                        std::string& fault) {
     FlowLine out;
     out.line = line;
+    if (text.front() == 'M') {
+        out.word = text[2] == '8' ? m98 : m99;
+        out.rest = std::string(text.substr(3));
+        if (out.word == m99 && !out.rest.empty()) {
+            fault = "M99: no other word may be in its line";
+            return std::nullopt;
+        }
+        return out;
+    }
     std::string_view rest = text.substr(1);
     if (!rest.empty() && rest.front() == '<') {
         const std::size_t end = rest.find('>');
@@ -78,7 +96,7 @@ std::optional<FlowLine> read_flow_line(std::size_t line, std::string_view text,
     if (word == kWords.end()) {
         fault =
             "expected sub, call, return, if, while, do, repeat, break, continue, or the end of "
-            "one, or nothing after the number of a program; Fanuc's M98 is not supported";
+            "one, or nothing after the number of a program";
         return std::nullopt;
     }
     out.word = word->second;
@@ -88,7 +106,8 @@ std::optional<FlowLine> read_flow_line(std::size_t line, std::string_view text,
 
 }  // namespace
 
-GcodeFlow::GcodeFlow(std::span<const std::string_view> lines, GcodeParameters& parameters)
+GcodeFlow::GcodeFlow(std::span<const std::string_view> lines, std::span<const std::size_t> starts,
+                     GcodeParameters& parameters)
     : parameters_(parameters) {
     for (std::size_t i = 0; i < lines.size(); ++i) {
         const std::string text = flow_text(lines[i]);
@@ -98,11 +117,35 @@ GcodeFlow::GcodeFlow(std::span<const std::string_view> lines, GcodeParameters& p
         std::string fault;
         if (std::optional<FlowLine> found = read_flow_line(i, text, fault)) {
             place_of_line_.emplace(i, flow_.size());
+            found->file = static_cast<std::size_t>(
+                std::upper_bound(starts.begin(), starts.end(), i) - starts.begin());
             flow_.push_back(std::move(*found));
         } else {
             fault_of_line_.emplace(i, std::move(fault));
         }
     }
+}
+
+std::vector<std::string> GcodeFlow::missing_subs(std::span<const std::string_view> lines) {
+    std::set<std::string> called, found;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        std::string fault;
+        const std::string text = flow_text(lines[i]);
+        const std::optional<FlowLine> line =
+            text.empty() ? std::nullopt : read_flow_line(i, text, fault);
+        if (line && (line->word == FlowWord::call || line->word == sub)) {
+            (line->word == sub ? found : called).insert(line->id);
+        }
+    }
+    std::vector<std::string> missing;
+    std::set_difference(called.begin(), called.end(), found.begin(), found.end(),
+                        std::back_inserter(missing));
+    return missing;
+}
+
+bool GcodeFlow::is_in_call() const {
+    return std::any_of(frames_.begin(), frames_.end(),
+                       [](const Frame& frame) { return frame.is_call(); });
 }
 
 std::string GcodeFlow::run(std::size_t line, std::size_t& next) {
@@ -136,6 +179,12 @@ std::string GcodeFlow::run(std::size_t line, std::size_t& next) {
         case number:
             pass_number();
             break;
+        case m98:
+            call_number(at, next);
+            break;
+        case m99:
+            end_number(next);
+            break;
         case while_:
             loop_while(at, next);
             break;
@@ -163,6 +212,9 @@ std::string GcodeFlow::run(std::size_t line, std::size_t& next) {
 const FlowLine* GcodeFlow::find_after(const FlowLine& from,
                                       std::initializer_list<FlowWord> words) const {
     for (const FlowLine* at = &from + 1; at != flow_.data() + flow_.size(); ++at) {
+        if (at->file != from.file) {
+            return nullptr;
+        }
         if (at->id == from.id && std::find(words.begin(), words.end(), at->word) != words.end()) {
             return at;
         }
@@ -210,9 +262,7 @@ std::string GcodeFlow::fault_of(std::size_t line) const {
 
 /// LinuxCNC 2.9 begins a subroutine here, and one within another is an error.
 void GcodeFlow::pass_number() {
-    const bool is_in_sub = std::any_of(frames_.begin(), frames_.end(),
-                                       [](const Frame& frame) { return frame.start->word == sub; });
-    if (is_in_sub) {
+    if (is_in_call()) {
         fault_ = "a program number inside a subroutine; delete the line";
     }
 }
@@ -224,6 +274,12 @@ void GcodeFlow::run_sub(const FlowLine& at, std::size_t& next) {
         fault_ = "there is no O" + at.id + " endsub";
         return;
     }
+    const bool has_inner =
+        std::any_of(&at + 1, end, [](const FlowLine& one) { return one.word == sub; });
+    if (has_inner) {
+        fault_ = "a subroutine begins inside O" + at.id + "; move it behind its endsub";
+        return;
+    }
     next = end->line + 1;
 }
 
@@ -233,7 +289,7 @@ void GcodeFlow::call(const FlowLine& at, std::size_t& next) {
     });
     if (found == flow_.end()) {
         fault_ = "there is no O" + at.id +
-                 " sub in this file; subroutines in files of their own are not supported";
+                 " sub in this file; pass the folder that has a file of this name with --sub";
         return;
     }
     std::vector<double> arguments;
@@ -247,15 +303,70 @@ void GcodeFlow::call(const FlowLine& at, std::size_t& next) {
     next = found->line + 1;
 }
 
+/// As in LinuxCNC, the parameters #1 to #30 are the caller's.
+void GcodeFlow::call_number(const FlowLine& at, std::size_t& next) {
+    std::string_view rest = at.rest;
+    std::optional<double> place, repeats = 1;
+    while (!rest.empty()) {
+        const char letter = rest.front();
+        GcodeValueReader reader(rest.substr(1), &parameters_);
+        const std::optional<double> value = reader.value();
+        if (!value || (letter != 'P' && letter != 'L')) {
+            fault_ = "M98: expected only P and L, with numbers";
+            return;
+        }
+        (letter == 'P' ? place : repeats) = value;
+        rest = reader.rest();
+    }
+    if (!place || *place != std::floor(*place) || *place < 0 || *place > 1e9) {
+        fault_ = "M98: expected P, the number of a subroutine";
+        return;
+    }
+    const std::string id = std::to_string(static_cast<std::int64_t>(*place));
+    const auto found = std::find_if(flow_.begin(), flow_.end(), [&](const FlowLine& one) {
+        return one.word == number && one.id == id && one.file == at.file;
+    });
+    if (found == flow_.end()) {
+        fault_ = "M98: there is no line O" + id + " in this file that M99 would end";
+        return;
+    }
+    if (std::round(*repeats) < 1) {
+        return;
+    }
+    frames_.push_back({.start = &*found, .return_to = next, .remaining = std::round(*repeats)});
+    parameters_.enter_names();
+    next = found->line + 1;
+}
+
+void GcodeFlow::end_number(std::size_t& next) {
+    while (!frames_.empty() && !frames_.back().is_call()) {
+        frames_.pop_back();  // loops that M99 leaves
+    }
+    if (frames_.empty() || frames_.back().start->word != number) {
+        fault_ = frames_.empty() ? "M99: repeats the program endlessly; write M2"
+                                 : "M99: ends no O sub; write endsub";
+        return;
+    }
+    Frame& frame = frames_.back();
+    parameters_.leave();
+    if (--frame.remaining >= 1) {
+        parameters_.enter_names();
+        next = frame.start->line + 1;
+        return;
+    }
+    next = frame.return_to;
+    frames_.pop_back();
+}
+
 void GcodeFlow::end_call(const FlowLine& at, std::size_t& next) {
     std::vector<double> values;
     if (!read_values(at, values)) {
         return;
     }
-    while (!frames_.empty() && frames_.back().start->word != sub) {
+    while (!frames_.empty() && !frames_.back().is_call()) {
         frames_.pop_back();  // loops that the return leaves
     }
-    if (frames_.empty() || frames_.back().start->id != at.id) {
+    if (frames_.empty() || frames_.back().start->word != sub || frames_.back().start->id != at.id) {
         fault_ = "no call of O" + at.id + " is under way";
         return;
     }
@@ -368,13 +479,11 @@ void GcodeFlow::end_loop(const FlowLine& at, std::size_t& next) {
 }
 
 void GcodeFlow::leave_loop(const FlowLine& at, std::size_t& next) {
-    while (!frames_.empty() && frames_.back().start->word != sub &&
-           frames_.back().start->id != at.id) {
+    while (!frames_.empty() && !frames_.back().is_call() && frames_.back().start->id != at.id) {
         frames_.pop_back();
     }
-    const FlowLine* const end = frames_.empty() || frames_.back().start->word == sub
-                                    ? nullptr
-                                    : end_of(*frames_.back().start);
+    const FlowLine* const end =
+        frames_.empty() || frames_.back().is_call() ? nullptr : end_of(*frames_.back().start);
     if (end == nullptr) {
         fault_ = "no loop O" + at.id + " is under way";
         return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// O-words: subroutines, conditions and loops of one program file. Source: LinuxCNC "O codes";
+// O-words, M98 and M99: subroutines, conditions and loops of a program. Source: LinuxCNC "O codes";
 // tests/oracle/rs274_test.py compares them with its interpreter.
 #pragma once
 
@@ -31,12 +31,16 @@ enum class FlowWord : std::uint8_t {
     endrepeat,
     break_,
     continue_,
-    number,  // nothing after it: a program's number, which does nothing
+    number,  // nothing after it: a program's number, or where M98 goes
+    m98,
+    m99,
 };
 
-/// One O-line: "o<pocket> call [3]" is {line, "<POCKET>", call, "[3]"}.
+/// One O-line: "o<pocket> call [3]" is {line, file, "<POCKET>", call, "[3]"}; of "M98 P3" the id is
+/// empty and the rest "P3".
 struct FlowLine {
     std::size_t line = 0;  // from 0
+    std::size_t file = 0;  // 0: the program's own
     std::string id;
     FlowWord word = FlowWord::endif;
     std::string rest;  // arguments, condition
@@ -44,14 +48,21 @@ struct FlowLine {
 
 class GcodeFlow {
   public:
-    /// @param lines  of the program, as written; they and `parameters` must outlive it
-    GcodeFlow(std::span<const std::string_view> lines, GcodeParameters& parameters);
+    /// @param lines   of the program and its subroutine files, as written; they and `parameters`
+    /// must outlive it
+    /// @param starts  the first line of each subroutine file, ascending
+    GcodeFlow(std::span<const std::string_view> lines, std::span<const std::size_t> starts,
+              GcodeParameters& parameters);
 
     /// Runs the O-line at `line`.
     /// @param next  out: the next line to run; in: the line after this one
     /// @return  empty, or the fault; the program cannot continue after a fault
     [[nodiscard]] std::string run(std::size_t line, std::size_t& next);
 
+    /// Names of subroutines that are called and not in these lines: "<POCKET>", "12".
+    [[nodiscard]] static std::vector<std::string> missing_subs(
+        std::span<const std::string_view> lines);
+    [[nodiscard]] bool is_in_call() const;
     /// Whether the line has a program's number and nothing else.
     [[nodiscard]] bool is_number(std::size_t line) const;
     /// The fault of a wrong O-line, whether it runs or not; empty for any other line.
@@ -61,7 +72,10 @@ class GcodeFlow {
     struct Frame {
         const FlowLine* start = nullptr;  // call, while, do or repeat
         std::size_t return_to = 0;        // call: the line after it
-        double remaining = 0;             // repeat
+        double remaining = 0;             // repeat, M98 L
+        [[nodiscard]] bool is_call() const {
+            return start->word == FlowWord::sub || start->word == FlowWord::number;
+        }
     };
 
     [[nodiscard]] const FlowLine* find_after(const FlowLine& from,
@@ -71,6 +85,8 @@ class GcodeFlow {
     void pass_number();
     void run_sub(const FlowLine& at, std::size_t& next);
     void call(const FlowLine& at, std::size_t& next);
+    void call_number(const FlowLine& at, std::size_t& next);
+    void end_number(std::size_t& next);
     void end_call(const FlowLine& at, std::size_t& next);
     void choose(const FlowLine& at, std::size_t& next);
     void skip_to_endif(const FlowLine& at, std::size_t& next);

@@ -54,6 +54,9 @@ std::optional<double> GcodeInterpreter::parameter(std::uint32_t index) const {
     if (axis == kNoIndex) {
         return 0.0;
     }
+    if (state_.is_probed[axis]) {
+        return std::nullopt;  // only the machine knows
+    }
     const bool is_rotary = machine_.axes[axis].kind == AxisKind::rotary;
     return programmed_position()[axis] / (is_rotary ? kPi / 180.0 : scale());
 }

@@ -87,6 +87,8 @@ class GcodeInterpreter {
     bool set_arc(Move& next);
     void run_thread();
     void probe();
+    /// True, and a fault, if a sum with the position of this axis depends on what was probed.
+    bool is_unknown_after_probe(char letter, std::uint32_t axis);
     [[nodiscard]] double arc_center(char center_letter, char axis_letter) const;
     /// G28, G30: moves to the words, if any, then the named axes, or all, to the stored position.
     void go_home();

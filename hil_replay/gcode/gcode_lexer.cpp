@@ -123,6 +123,13 @@ bool read_item(std::string_view& rest, bool is_first, const GcodeParameters* par
 void read_words(std::string_view rest, const GcodeParameters* parameters, GcodeLine& line) {
     bool is_first = true;
     while (!rest.empty()) {
+        const bool is_fanuc_call = (rest.starts_with("M98") || rest.starts_with("M99")) &&
+                                   (rest.size() == 3 || !is_number_char(rest[3]));
+        if (is_fanuc_call && parameters != nullptr && line.words.empty() &&
+            line.assignments.empty()) {
+            line.flow = std::string(rest);
+            return;
+        }
         if (rest.front() == 'O') {
             const bool is_alone = line.words.empty() && line.assignments.empty();
             if (is_alone && parameters != nullptr) {

@@ -25,7 +25,8 @@ struct GcodeLine {
     bool block_delete = false;     // began with '/'
     std::vector<GcodeWord> words;  // without N words
     std::vector<GcodeAssignment> assignments;
-    std::string flow;  // an O-word and the text after it, without blanks; `words` is then empty
+    std::string flow;  // an O-word, M98 or M99, and the text after it, without blanks; `words` is
+                       // then empty
     // The first fault; empty if the whole line was read.
     std::string fault_word;
     std::string fault;

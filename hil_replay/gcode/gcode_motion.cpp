@@ -115,6 +115,10 @@ bool GcodeInterpreter::set_target(AxisPositions& target) {
             continue;
         }
         const double value = word_value(letter, machine_.axes[index]);
+        if (state_.is_incremental && is_unknown_after_probe(letter, index)) {
+            return false;
+        }
+        state_.is_probed[index] = false;
         if (state_.is_incremental) {
             target[index] = state_.position[index] + value;
         } else if (block_->is_machine) {
@@ -416,6 +420,7 @@ void GcodeInterpreter::go_home() {
         const double shown = *stored[axis] / (is_rotary ? kRadPerDegree : 1.0);
         assume(word + " " + letter + print("%.6g", shown));
         home.target[axis] = *stored[axis];
+        state_.is_probed[axis] = false;
         if (options_.program.rotary[axis] == RotaryRule::wrapped && machine_.axes[axis].unlimited) {
             home.target[axis] = wrapped_target(letter, axis, *stored[axis], shown);
             keep_word(axis, home.target[axis]);

@@ -44,6 +44,9 @@ void GcodeInterpreter::write_offsets() {
         if (axis == kNoIndex) {
             return;
         }
+        if (code == 920 && is_unknown_after_probe(letter, axis)) {
+            return;
+        }
         has_axis = true;
         double& offset = state_.local_offset[axis];
         const double value = word_value(letter, machine_.axes[axis]);
@@ -166,6 +169,9 @@ void GcodeInterpreter::write_work_offset() {
         }
         const std::uint32_t axis = named_axis(letter);
         if (axis == kNoIndex) {
+            return;
+        }
+        if (kind == 20 && is_unknown_after_probe(letter, axis)) {
             return;
         }
         const double value = word_value(letter, machine_.axes[axis]);

@@ -2,8 +2,12 @@
 #include "hil_replay/gcode/gcode_reader.hpp"
 
 #include <algorithm>
+#include <cctype>
+#include <deque>
 #include <set>
+#include <span>
 
+#include "config/text/small_file.hpp"
 #include "config/text/text_line.hpp"
 #include "core/base/sincos.hpp"
 #include "hil_replay/gcode/gcode_block.hpp"
@@ -53,9 +57,10 @@ class Reading {
         : options_(options),
           result_(result),
           lines_(lines_of(text, first_return_)),
+          own_lines_(lines_.size()),
           interpreter_(machine, options, result),
           parameters_([this](std::uint32_t index) { return interpreter_.parameter(index); }),
-          flow_(lines_, parameters_) {}
+          flow_(with_sub_files(), file_starts_, parameters_) {}
 
     void run() {
         if (first_return_ != 0) {
@@ -67,7 +72,7 @@ class Reading {
         run_startup_code();
         std::size_t next = 0;
         std::uint64_t steps = 0;
-        while (next < lines_.size() && !has_ended()) {
+        while (!is_file_end(next) && !has_ended()) {
             const std::size_t line = next++;
             if (++steps > options_.steps_max) {
                 fault(line, "program",
@@ -76,18 +81,24 @@ class Reading {
                           "--max-lines N");
                 return;
             }
+            const std::size_t faults_before = result_.faults.size();
             const bool goes_on = run_line(line, next);
+            name_sub_file(line, faults_before);
             // Lines that a jump skips count as read.
-            result_.line_count = std::max(result_.line_count, static_cast<std::uint32_t>(next));
+            result_.line_count = std::max(result_.line_count,
+                                          static_cast<std::uint32_t>(std::min(next, own_lines_)));
             if (!goes_on) {
                 return;
             }
             if (result_.faults.size() >= options_.faults_max) {
-                result_.has_more_faults = next < lines_.size();
+                result_.has_more_faults = !is_file_end(next);
                 return;
             }
         }
-        if (!has_ended()) {
+        if (!has_ended() && flow_.is_in_call()) {
+            fault(std::min(next, own_lines_) - 1, "O",
+                  "the file ends inside a subroutine; end it with endsub, or M99 after M98");
+        } else if (!has_ended()) {
             result_.notes.push_back(std::to_string(result_.line_count) +
                                     ": the program ends without M2, M30 or a second %");
         }
@@ -97,8 +108,75 @@ class Reading {
     [[nodiscard]] bool has_ended() const { return interpreter_.has_ended() || percents_ >= 2; }
 
     void fault(std::size_t line, std::string word, std::string message) {
-        result_.faults.push_back(
-            {static_cast<std::uint32_t>(line + 1), std::move(word), std::move(message)});
+        result_.faults.push_back({number_of(line), std::move(word), std::move(message)});
+    }
+
+    /// Appends the files of subroutines that are not in the program.
+    std::span<const std::string_view> with_sub_files() {
+        std::set<std::string> tried;
+        bool is_new = !options_.sub_folders.empty();
+        while (is_new) {
+            is_new = false;
+            for (const std::string& id : GcodeFlow::missing_subs(lines_)) {
+                if (tried.insert(id).second && read_sub_file(id)) {
+                    is_new = true;
+                }
+            }
+        }
+        return lines_;
+    }
+
+    bool read_sub_file(const std::string& id) {
+        constexpr std::size_t kSubBytesMax = 16U << 20U;
+        std::string name;
+        for (const char c : id) {
+            if (c != '<' && c != '>') {
+                name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+            }
+        }
+        if (name.find('/') != std::string::npos) {
+            return false;
+        }
+        name += ".ngc";
+        for (const std::string& folder : options_.sub_folders) {
+            std::string text;
+            const SmallFileFault fault = read_small_file(folder + "/" + name, kSubBytesMax, text);
+            if (fault.got.empty() && fault.wanted.empty()) {
+                std::size_t first_return = 0;
+                const std::string& kept = sub_texts_.emplace_back(std::move(text));
+                const std::vector<std::string_view> more = lines_of(kept, first_return);
+                file_starts_.push_back(lines_.size());
+                sub_names_.push_back(name);
+                lines_.insert(lines_.end(), more.begin(), more.end());
+                result_.read_as.push_back("subroutine " + printable_line(folder + "/" + name));
+                return true;
+            }
+        }
+        return false;
+    }
+
+    [[nodiscard]] bool is_file_end(std::size_t next) const {
+        return next >= lines_.size() || next == own_lines_ ||
+               std::binary_search(file_starts_.begin(), file_starts_.end(), next);
+    }
+
+    /// Of the program: for a line of a subroutine's file, the line that calls it.
+    [[nodiscard]] std::uint32_t number_of(std::size_t line) const {
+        return static_cast<std::uint32_t>((line < own_lines_ ? line : last_own_line_) + 1);
+    }
+
+    /// New faults of a line in a subroutine's file begin with that file and line.
+    void name_sub_file(std::size_t line, std::size_t faults_before) {
+        if (line < own_lines_) {
+            return;
+        }
+        const auto file = std::upper_bound(file_starts_.begin(), file_starts_.end(), line) - 1;
+        const std::string place =
+            sub_names_[static_cast<std::size_t>(file - file_starts_.begin())] + ":" +
+            std::to_string(line - *file + 1) + ": ";
+        for (std::size_t i = faults_before; i < result_.faults.size(); ++i) {
+            result_.faults[i].message.insert(0, place);
+        }
     }
 
     /// Its faults and moves have line 0.
@@ -129,6 +207,7 @@ class Reading {
 
     /// Runs one line. False: the program cannot continue.
     bool run_line(std::size_t at, std::size_t& next) {
+        last_own_line_ = at < own_lines_ ? at : last_own_line_;
         const GcodeLine line = lex_gcode_line(lines_[at], &parameters_);
         const std::string_view control =
             line.fault.empty() ? std::string_view{} : foreign_control(lines_[at]);
@@ -141,7 +220,7 @@ class Reading {
             return false;
         }
         if (line.is_percent) {
-            ++percents_;
+            percents_ += at < own_lines_ ? 1 : 0;
             return true;
         }
         if (line.block_delete && options_.block_delete == BlockDelete::refuse) {
@@ -174,7 +253,7 @@ class Reading {
     /// Which lines run is unknown after a wrong O-word: lists the words of all others that no line
     /// may have, and wrong O-words, without running any.
     void list_words_after(std::size_t at) {
-        while (++at < lines_.size()) {
+        while (++at < own_lines_) {
             if (result_.faults.size() >= options_.faults_max) {
                 result_.has_more_faults = true;
                 return;
@@ -196,7 +275,7 @@ class Reading {
 
     void run_block(std::size_t at, const GcodeLine& line) {
         const std::size_t faults_before = result_.faults.size();
-        const auto number = static_cast<std::uint32_t>(at + 1);
+        const std::uint32_t number = number_of(at);
         const GcodeBlock block = make_gcode_block(line, number, options_.ignored, result_.faults);
         for (const std::string& word : block.ignored) {
             result_.ignored.push_back({number, word, printable_line(lines_[at])});
@@ -225,7 +304,11 @@ class Reading {
     const GcodeOptions& options_;
     GcodeResult& result_;
     std::size_t first_return_ = 0;
-    std::vector<std::string_view> lines_;
+    std::vector<std::string_view> lines_;  // of the program, then of its subroutines' files
+    std::size_t own_lines_ = 0, last_own_line_ = 0;
+    std::vector<std::size_t> file_starts_;
+    std::vector<std::string> sub_names_;
+    std::deque<std::string> sub_texts_;
     std::set<std::size_t> faulty_lines_;  // with a fault of their words, reported once
     GcodeInterpreter interpreter_;
     GcodeParameters parameters_;

@@ -30,6 +30,7 @@ enum class BlockDelete : std::uint8_t {
 struct GcodeOptions {
     AxisPositions start{};                                   // inside travel, mm or rad
     std::array<AxisPositions, kWorkOffsets> work_offsets{};  // mm or rad, zero unless stated
+    std::vector<std::string> sub_folders;                    // of subroutines in files of their own
     std::vector<std::string> ignored;  // "M428": words to skip, reported in the result
     std::vector<std::pair<std::uint16_t, std::uint16_t>>
         tools;         // program's number, machine's number

@@ -57,6 +57,8 @@ struct GcodeState {
     // The actual position in the same coordinates while it differs: from a change of the tool
     // offset under control to the next move.
     std::optional<AxisPositions> standing_at;
+    // Axes that a probe moved and no absolute word since: where they are is the touched part's.
+    std::array<bool, kAxesMax> is_probed{};
     // Where its last absolute word left each axis, and the offset then: LinuxCNC has that very
     // number, and not a sum that differs by rounding.
     AxisPositions word_position{}, word_offset{};

@@ -63,7 +63,20 @@ void GcodeInterpreter::probe() {
         return;
     }
     assume(word + " touches nothing");
+    for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
+        state_.is_probed[i] = state_.is_probed[i] || next.target[i] != state_.position[i];
+    }
     append(next);
+}
+
+bool GcodeInterpreter::is_unknown_after_probe(char letter, std::uint32_t axis) {
+    if (!state_.is_probed[axis]) {
+        return false;
+    }
+    fault(std::string(1, letter),
+          "counts from where a probe stopped, which the machine alone "
+          "knows; move the axis by an absolute word before");
+    return true;
 }
 
 }  // namespace axg

@@ -160,6 +160,10 @@ void GcodeParameters::enter(const std::vector<double>& arguments) {
     std::copy_n(arguments.begin(), std::min<std::size_t>(arguments.size(), kOwnParameters), first);
 }
 
+void GcodeParameters::enter_names() {
+    callers_.push_back({{}, std::exchange(local_, {})});
+}
+
 void GcodeParameters::leave() {
     std::copy(callers_.back().numbered.begin(), callers_.back().numbered.end(),
               numbered_.begin() + 1);

@@ -35,12 +35,14 @@ class GcodeParameters {
     /// Begins a call: #1 to #30 are the arguments, the rest of them 0; local names (without a
     /// leading '_') are undefined.
     void enter(const std::vector<double>& arguments);
+    /// Begins a call by M98: only names without a leading '_' are its own.
+    void enter_names();
     void leave();
 
   private:
     using Names = std::map<std::string, double, std::less<>>;
     struct Scope {
-        std::vector<double> numbered;  // of the caller, #1 to #30
+        std::vector<double> numbered;  // of the caller, #1 to #30; empty: shared with it
         Names names;
     };
     static bool is_global(const std::string& name) { return !name.empty() && name[0] == '_'; }

@@ -14,9 +14,7 @@ constexpr std::string_view kSpline = "spline; post it as lines or arcs";
 constexpr std::string_view kHomeWrite = "stores a position; use G53 G0";
 
 constexpr std::string_view kLathe = "roughing cycle of a lathe";
-constexpr std::string_view kModalState =
-    "saves or restores modes; write the words of those modes in their place";
-constexpr std::string_view kFanucCall = "Fanuc's subprograms; write O<name> sub and call";
+constexpr std::string_view kModalState = "saves or restores modes; write their words";
 
 constexpr GcodeWordRule kRules[] = {
     {'G', 0, motion, read, "rapid"},
@@ -140,8 +138,8 @@ constexpr GcodeWordRule kRules[] = {
     {'M', 710, count, refused, kModalState},
     {'M', 720, count, refused, kModalState},
     {'M', 730, count, refused, kModalState},
-    {'M', 980, count, refused, kFanucCall},
-    {'M', 990, count, refused, kFanucCall},
+    {'M', 980, count, read, "calls the lines from O P to M99, L times"},
+    {'M', 990, count, read, "ends a call by M98"},
     {'M', 4280, kinematics, read, "tool centre point control on"},
     {'M', 4290, kinematics, read, "tool centre point control off"},
 };

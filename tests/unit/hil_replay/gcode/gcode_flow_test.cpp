@@ -3,6 +3,9 @@
 // in circles. What the right ones do, LinuxCNC's interpreter judges (oracle/rs274_test.py).
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+
 #include "tests/support/gcode_text.hpp"
 
 namespace axg::test {
@@ -40,6 +43,60 @@ TEST(GcodeValues, WrongOnesSayWhat) {
     expect_fault("#<a\n", "expected a name and '>'");
     expect_fault("G0 X" + std::string(60, '[') + "1" + std::string(60, ']') + "\n",
                  "more than 50 nested brackets");
+}
+
+TEST(GcodeFlow, Fanuc98CallsTheLinesUpTo99) {
+    EXPECT_EQ(end_of("#1=1\nG91\nM98 P0007 L3\nG90 Y#1\nM2\nO7\nG0 X2\n#1=[#1 + 1]\nM99\n")[kX], 6);
+    EXPECT_EQ(end_of("#1=1\nM98 P7 L2\nG0 X#1\nM2\nO0007\n#1=[#1 + 1]\nM99\n")[kX], 3)
+        << "#1 is the caller's";
+    EXPECT_EQ(end_of("G0 X1\nM98 P7 L0\nM2\nO7\nG0 X2\nM99\n")[kX], 1);
+    EXPECT_EQ(end_of("M98 P7\nG0 Y1\nM2\nO7\nM98 P8\nM99\nO8\nG0 X2\nM99\n")[kY], 1);
+    EXPECT_EQ(end_of("M98 P7\nG0 Y1\nM2\nO7\no1 while [1]\nM99\no1 endwhile\n")[kY], 1);
+    expect_fault("#<a>=1\nM98 P7\nM2\nO7\nG0 X#<a>\nM99\n", "5: X#: #<A>: no line has set it");
+    expect_fault("M98\n", "M98: expected P");
+    expect_fault("M98 P1.5\n", "M98: expected P");
+    expect_fault("M98 P7 X1\n", "M98: expected only P and L");
+    expect_fault("M98 P7\n", "M98: there is no line O7 in this file");
+    expect_fault("M98 P7\no7 sub\no7 endsub\n", "M98: there is no line O7 in this file");
+    expect_fault("M99\n", "M99: repeats the program endlessly; write M2");
+    expect_fault("M99 P1\n", "M99: no other word may be in its line");
+    expect_fault("o7 sub\nM99\no7 endsub\no7 call\n", "M99: ends no O sub; write endsub");
+    expect_fault("M98 P7\nM2\nO7\no7 endsub\n", "no call of O7");
+    expect_fault("M98 P7\nM2\nO7\nG0 X1\n", "the file ends inside a subroutine");
+    expect_fault("G0 X1 M99\n", "M99: has to begin its line");
+    expect_fault("o1 sub\no2 sub\no2 endsub\no1 endsub\n", "a subroutine begins inside O1");
+}
+
+TEST(GcodeFlow, SubroutinesAreReadFromTheirFolders) {
+    const std::filesystem::path folder =
+        std::filesystem::temp_directory_path() / "axguard-gcode-subs";
+    std::filesystem::create_directories(folder / "second");
+    const auto write = [&folder](const char* name, const char* text) {
+        std::ofstream(folder / name) << text;
+    };
+    write("side.ngc",
+          "%\no<side> sub\no10 if [#1 gt 3]\nG0 X#1\no10 endif\no<deep> call\n"
+          "o<side> endsub [7]\n%\n");
+    write("second/deep.ngc", "o<deep> sub\nG0 Z-2\no<deep> endsub\nG0 Z-99\n");
+    write("bad.ngc", "o<bad> sub\n\nG77\no<bad> endsub\n");
+    write("open.ngc", "o<open> sub\nG0 X1\n");
+    GcodeOptions options;
+    options.sub_folders = {folder.string(), (folder / "second").string()};
+    const AxisPositions end =
+        end_of("o10 if [1]\nO<Side> call [4]\no10 endif\nG0 Y#<_value>\n", options);
+    EXPECT_EQ(end[kX], 4);
+    EXPECT_EQ(end[kY], 7);
+    EXPECT_EQ(end[kZ], -2);
+    const GcodeResult result = read("G0 Y1\no<side> call [4]\nM2\n", options);
+    EXPECT_EQ(result.program.moves.back().line, 2U) << "the line that calls";
+    EXPECT_EQ(result.line_count, 3U);
+    EXPECT_EQ(result.read_as[0], "subroutine " + folder.string() + "/side.ngc");
+    expect_fault("M3\no<bad> call\n", "2: G77: bad.ngc:3: not supported", options);
+    expect_fault("o<open> call\n", "the file ends inside a subroutine", options);
+    expect_fault("o<none> call\n", "pass the folder that has a file of this name with --sub",
+                 options);
+    expect_fault("o<second/deep> call\n", "there is no O<SECOND/DEEP> sub in this file", options);
+    std::filesystem::remove_all(folder);
 }
 
 TEST(GcodeValues, NamesOfTheControlAreItsOwn) {
@@ -88,10 +145,10 @@ TEST(GcodeFlow, FaultsAfterAWrongOWordAreListedToo) {
     EXPECT_EQ(
         faults_of(read("%\no5 spin\nG0 X1\nG68.2 X0 Y0\n#<a> = #<b>\no6 wobble\nG69 M2\nG87\n")),
         "2: O: expected sub, call, return, if, while, do, repeat, break, continue, or the end "
-        "of one, or nothing after the number of a program; Fanuc's M98 is not supported\n"
+        "of one, or nothing after the number of a program\n"
         "4: G68.2: not supported (not a word of this dialect)\n"
         "6: O: expected sub, call, return, if, while, do, repeat, break, continue, or the end "
-        "of one, or nothing after the number of a program; Fanuc's M98 is not supported\n"
+        "of one, or nothing after the number of a program\n"
         "7: G69: not supported (not a word of this dialect)\n");
     EXPECT_EQ(read("O12\nG68.2\nG53.1\nG0 X1\nG69\nM30\n").faults.size(), 3U);
     GcodeOptions options;

@@ -462,6 +462,10 @@ TEST(GcodeProgram, IgnoredWordsAreEchoedWithTheirLine) {
     EXPECT_EQ(result.ignored[0].line, 1U);
     EXPECT_EQ(result.ignored[0].text, "M428 (on)");
     EXPECT_EQ(read("M427\n", options).faults.size(), 1U) << "only what was named";
+    options.ignored = {"M101", "M428"};
+    EXPECT_EQ(program_of("M101 P1 Q2\nG0 X1\nM101 X2 P3\n", options).moves.size(), 2U);
+    EXPECT_NE(fault_of("G0 M101 P1 X2\n", options).find("P: no word of this block"),
+              std::string::npos);
     options.ignored = {"G0"};
     EXPECT_EQ(end_of("G0 X1\n", options)[kX], 1.0) << "a word of the dialect is never left out";
 }

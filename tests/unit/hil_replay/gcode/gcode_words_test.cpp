@@ -128,6 +128,15 @@ TEST(GcodeProbe, IsReadToItsEndAndSaysSo) {
     EXPECT_EQ(result.program.moves[1].target[kX], 5);
     EXPECT_EQ(read_as_text(result.read_as),
               "read as: G38.2 touches nothing; G38.3 touches nothing");
+    for (const char* const text : {"G91 G0 Z1\n", "G92 Z0\n", "G10 L20 P1 Z0\n"}) {
+        EXPECT_NE(fault_of(std::string("F9 G38.2 Z-1\nG91 G0 X1\n") + text)
+                      .find("Z: counts from where a probe stopped"),
+                  std::string::npos)
+            << text;
+    }
+    EXPECT_NE(fault_of("F9 G38.2 Z-1\nG0 X#5422\n").find("#5422: not available"),
+              std::string::npos);
+    EXPECT_EQ(end_of("F9 G38.2 Z-1\nG0 Z3\nG91 Z1\nG92 Z0\n")[kZ], 4);
     EXPECT_NE(fault_of("F9 G38.2\n").find("G38: expected axis words"), std::string::npos);
     EXPECT_NE(fault_of("F9 G38.2 Z-1 A5\n").find("G38.2: A: no rotary axis"), std::string::npos);
     EXPECT_NE(fault_of("F9 G38.2 Z-0.253\n").find("nearer than 0.254 mm"), std::string::npos);
