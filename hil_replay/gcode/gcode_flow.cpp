@@ -143,9 +143,9 @@ std::vector<std::string> GcodeFlow::missing_subs(std::span<const std::string_vie
     return missing;
 }
 
-bool GcodeFlow::is_in_call() const {
-    return std::any_of(frames_.begin(), frames_.end(),
-                       [](const Frame& frame) { return frame.is_call(); });
+std::size_t GcodeFlow::calls() const {
+    return static_cast<std::size_t>(std::count_if(
+        frames_.begin(), frames_.end(), [](const Frame& frame) { return frame.is_call(); }));
 }
 
 std::string GcodeFlow::run(std::size_t line, std::size_t& next) {

@@ -62,7 +62,8 @@ class GcodeFlow {
     /// Names of subroutines that are called and not in these lines: "<POCKET>", "12".
     [[nodiscard]] static std::vector<std::string> missing_subs(
         std::span<const std::string_view> lines);
-    [[nodiscard]] bool is_in_call() const;
+    [[nodiscard]] std::size_t calls() const;
+    [[nodiscard]] bool is_in_call() const { return calls() != 0; }
     /// Whether the line has a program's number and nothing else.
     [[nodiscard]] bool is_number(std::size_t line) const;
     /// The fault of a wrong O-line, whether it runs or not; empty for any other line.

@@ -67,6 +67,7 @@ void GcodeInterpreter::run(const GcodeBlock& block) {
     change_tool();
     dwell();
     wait_for_input();
+    save_modes();
     const double rotation_before_rad = rotation_rad();
     set_modes();
     use_lengths();

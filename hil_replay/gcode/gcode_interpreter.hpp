@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Converts block after block to canonical moves. Modes and tools: gcode_interpreter.cpp; offsets:
 // gcode_offsets.cpp; tool centre point control: gcode_tip.cpp; motion: gcode_motion.cpp; canned
-// cycles: gcode_cycle.cpp; threads and probing: gcode_thread.cpp.
+// cycles: gcode_cycle.cpp; threads and probing: gcode_thread.cpp; saved modes:
+// gcode_modes.cpp.
 #pragma once
 
 #include <optional>
@@ -22,6 +23,9 @@ class GcodeInterpreter {
     /// Runs a block in LinuxCNC's "Order of Execution": F uses the unit active before the block.
     /// Appends faults and moves to the result.
     void run(const GcodeBlock& block);
+    /// The number of calls under way: M73 restores the modes when it falls.
+    /// @param line  of the return
+    void set_call_depth(std::size_t depth, std::uint32_t line);
     /// A skipped block may have set F: later blocks then report no missing feed.
     void skip_block() { state_.is_feed_unknown = true; }
     [[nodiscard]] bool has_ended() const { return state_.has_ended; }
@@ -50,6 +54,8 @@ class GcodeInterpreter {
     [[nodiscard]] const Tool* find_tool(std::uint16_t number) const;
     void change_tool();
     void dwell();
+    void save_modes();
+    void restore_modes(const GcodeState& saved);
     void wait_for_input();
     void set_modes();
     void set_tool_length();
@@ -117,6 +123,11 @@ class GcodeInterpreter {
     const GcodeOptions& options_;
     GcodeResult& result_;
     GcodeState state_;
+    struct SavedModes {
+        GcodeState state;
+        bool is_for_return = false;
+    };
+    std::vector<std::optional<SavedModes>> saved_modes_{1};  // by depth of call
     TravelWatch travel_;
     std::optional<TipControl> tip_control_;  // made when a program first switches it on
     std::vector<std::uint32_t> unruled_;     // axes whose missing rule was reported

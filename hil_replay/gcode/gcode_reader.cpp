@@ -234,6 +234,7 @@ class Reading {
         }
         if (!line.flow.empty()) {
             std::string wrong = flow_.run(at, next);
+            interpreter_.set_call_depth(flow_.calls(), number_of(at));
             if (wrong.empty() && flow_.is_number(at) && !options_.program.takes_program_numbers) {
                 wrong =
                     "a program number, and the machine file has program.program_numbers: false; "

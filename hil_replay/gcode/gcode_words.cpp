@@ -14,7 +14,6 @@ constexpr std::string_view kSpline = "spline; post it as lines or arcs";
 constexpr std::string_view kHomeWrite = "stores a position; use G53 G0";
 
 constexpr std::string_view kLathe = "roughing cycle of a lathe";
-constexpr std::string_view kModalState = "saves or restores modes; write their words";
 
 constexpr GcodeWordRule kRules[] = {
     {'G', 0, motion, read, "rapid"},
@@ -134,10 +133,10 @@ constexpr GcodeWordRule kRules[] = {
     {'M', 660, outputs, read, "waits for an input: the axes come to rest"},
     {'M', 670, outputs, no_motion, "analog output, with motion"},
     {'M', 680, outputs, no_motion, "analog output"},
-    {'M', 700, count, refused, kModalState},
-    {'M', 710, count, refused, kModalState},
-    {'M', 720, count, refused, kModalState},
-    {'M', 730, count, refused, kModalState},
+    {'M', 700, saving, read, "saves the modes"},
+    {'M', 710, saving, read, "forgets saved modes"},
+    {'M', 720, saving, read, "restores the modes"},
+    {'M', 730, saving, read, "saves them until the return"},
     {'M', 980, count, read, "calls the lines from O P to M99, L times"},
     {'M', 990, count, read, "ends a call by M98"},
     {'M', 4280, kinematics, read, "tool centre point control on"},

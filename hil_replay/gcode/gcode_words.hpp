@@ -31,6 +31,7 @@ enum class ModalGroup : std::uint8_t {
     overrides,     // M48 M49 M50 M51 M53
     kinematics,    // M428 M429
     outputs,       // M62 to M68
+    saving,        // M70 to M73
     count,
 };
 inline constexpr std::size_t kModalGroups = static_cast<std::size_t>(ModalGroup::count);

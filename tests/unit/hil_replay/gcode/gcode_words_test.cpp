@@ -94,6 +94,22 @@ TEST(GcodeWords, CancellingAMotionYieldsToOneOfTheSameBlock) {
     EXPECT_NE(fault_of("G80 G0 G1 X1\n").find("G1: conflicts with G0"), std::string::npos);
 }
 
+TEST(GcodeModes, AreSavedAndRestored) {
+    EXPECT_EQ(end_of("G91\nM70\nG90 G20\nM72\nG0 X1\nX1\n")[kX], 2) << "G91 and mm again";
+    EXPECT_EQ(end_of("G0 X1 F9\nM70\nG1 X2\nM72\nX3\n")[kX], 3);
+    EXPECT_EQ(program_of("F9 G1 X1\nM70\nF20 X2\nM72\nX3\n").moves.back().feed, 9);
+    EXPECT_EQ(end_of("G10 L2 P2 X5\nM70\nG55\nM72\nG0 X1\n")[kX], 1) << "the work offset";
+    const char* const sub = "o1 sub\nM73\nG91\no1 if [#1]\nM71\no1 endif\no1 endsub\n";
+    EXPECT_EQ(end_of(std::string(sub) + "G0 X4\no1 call [0]\nX1\n")[kX], 1) << "on return";
+    EXPECT_EQ(end_of(std::string(sub) + "G0 X4\no1 call [1]\nX1\n")[kX], 5) << "M71 forgets";
+    EXPECT_EQ(fault_of("M72\n"),
+              "1: M72: no modes are saved here; write M70 before it, in the same subroutine\n");
+    EXPECT_NE(fault_of("M70\no1 sub\nM72\no1 endsub\no1 call\n").find("3: M72: no modes"),
+              std::string::npos);
+    EXPECT_NE(fault_of("M70\nG52 X1\nM72\n").find("M72: the tool offset, G52 or G92 changed"),
+              std::string::npos);
+}
+
 TEST(GcodeThreads, KeepPaceWithTheSpindle) {
     const Program program = program_of("S100 G0 X3\nG33 Z-10 K1.5\nM8\nZ-20 K2\n");
     ASSERT_EQ(program.moves.size(), 3U);
