@@ -87,9 +87,6 @@ void GcodeInterpreter::set_feed_and_tool() {
             state_.feed = 0;  // as in LinuxCNC, even if the mode was already on
         }
     }
-    if (block.value('F') != 0 && !state_.is_inverse_time) {
-        use_start_unit('F');
-    }
     if (block.has('F')) {
         const double feed = block.value('F');
         if (feed < 0) {
@@ -97,6 +94,7 @@ void GcodeInterpreter::set_feed_and_tool() {
             state_.is_feed_unknown = true;
         } else if (!state_.is_inverse_time) {
             state_.feed = feed;
+            state_.is_feed_in_start_unit = state_.is_unit_of_start && feed != 0;
             state_.feed_scale = state_.is_inch ? kMmPerInch : 1.0;
         }
     }
@@ -267,19 +265,21 @@ void GcodeInterpreter::use_lengths() {
 }
 
 void GcodeInterpreter::use_start_unit(char letter) {
-    if (!state_.is_unit_of_start) {
+    bool& is_of_start = letter == 'F' ? state_.is_feed_in_start_unit : state_.is_unit_of_start;
+    if (!is_of_start) {
         return;
     }
     if (options_.program.starts_in_inch) {
-        assume(state_.is_inch ? "starts in inch" : "starts in mm");
+        assume(*options_.program.starts_in_inch ? "starts in inch" : "starts in mm");
         return;
     }
     fault(std::string(1, letter),
-          letter == 'F' ? "no G20 or G21 in a block before this feed, and the machine file has no "
-                          "program.start_unit; state it there, or write G20 or G21 in a line before"
-                        : "no G20 or G21 before this length, and the machine file has no "
-                          "program.start_unit; state it there, or write G20 or G21");
-    state_.is_unit_of_start = false;  // said once
+          letter == 'F'
+              ? "written before any G20 or G21, and the machine file has no "
+                "program.start_unit; state it there, or write G20 or G21 in a line before F"
+              : "no G20 or G21 before this length, and the machine file has no "
+                "program.start_unit; state it there, or write G20 or G21");
+    is_of_start = false;  // said once
 }
 
 void GcodeInterpreter::stop() {

@@ -54,6 +54,7 @@ void GcodeInterpreter::restore_modes(const GcodeState& saved) {
     state_.is_per_revolution = saved.is_per_revolution;
     state_.feed = saved.feed;
     state_.feed_scale = saved.feed_scale;
+    state_.is_feed_in_start_unit = saved.is_feed_in_start_unit;
     state_.spindle_rev_min = saved.spindle_rev_min;
     state_.has_surface_speed = saved.has_surface_speed;
     state_.is_exact = saved.is_exact;

@@ -280,6 +280,9 @@ double GcodeInterpreter::feed_per_minute(bool moves_linear) {
         }
         return 0;
     }
+    if (moves_linear) {
+        use_start_unit('F');
+    }
     return state_.feed * (moves_linear ? state_.feed_scale : 1.0) *
            (state_.is_per_revolution ? spindle_speed("G95") : 1.0);
 }

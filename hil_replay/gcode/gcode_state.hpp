@@ -32,13 +32,14 @@ struct GcodeState {
     bool is_incremental = false;
     bool has_absolute_centers = false;
     bool is_inverse_time = false, is_per_revolution = false;
-    double feed = 0;                 // as programmed, per minute or per revolution
-    double spindle_rev_min = 0;      // S
-    bool has_surface_speed = false;  // G96: S is no speed of the spindle
-    bool is_feed_unknown = false;    // a refused block may have set it
-    double feed_scale = 1;           // 25.4 if F was read in inch
-    bool is_exact = false;           // G61, G61.1
-    double blend_mm = -1;            // G64 P; negative: the planner's default
+    double feed = 0;                     // as programmed, per minute or per revolution
+    double spindle_rev_min = 0;          // S
+    bool has_surface_speed = false;      // G96: S is no speed of the spindle
+    bool is_feed_unknown = false;        // a refused block may have set it
+    double feed_scale = 1;               // 25.4 if F was read in inch
+    bool is_feed_in_start_unit = false;  // F was read before any G20 or G21
+    bool is_exact = false;               // G61, G61.1
+    double blend_mm = -1;                // G64 P; negative: the planner's default
     std::size_t work_offset = 0;
     std::array<AxisPositions, kWorkOffsets> work_offsets{};  // mm or rad
     std::array<double, kWorkOffsets> rotations_rad{};        // G10 L2 R: of X and Y about Z

@@ -182,14 +182,16 @@ TEST(GcodeSettings, TheUnitOfTheStartIsStatedOrNotNeeded) {
     const char* const kLacks = "no G20 or G21 before this length";
     EXPECT_NE(fault_of("G90\nG0 X2\nY3\n", options).find("2: X: no G20 or G21 before"),
               std::string::npos);
-    EXPECT_NE(fault_of("G1 F200\nG21 X2\n", options).find("1: F: no G20 or G21 in a block before"),
+    EXPECT_NE(fault_of("G1 F200\nG21 X2\n", options).find("2: F: written before any G20 or G21"),
               std::string::npos);
     EXPECT_NE(fault_of("G64 P0.1\nG21\n", options).find(kLacks), std::string::npos);
     EXPECT_NE(fault_of("G10 L2 P1 Z4\nG21\n", options).find(kLacks), std::string::npos);
     EXPECT_EQ(faults_of(read("G0 X0 A-9\nG93 G1 A-3 F2\nG21\nG94 G1 X2 F9\n", options)), "");
-    EXPECT_NE(fault_of("G20 F9\n", options).find("1: F: no G20 or G21 in a block before"),
+    EXPECT_NE(fault_of("G20 F9\nG1 X1\n", options).find("2: F: written before any G20 or G21"),
               std::string::npos)
         << "F counts in the unit before its block";
+    EXPECT_EQ(faults_of(read("G20 F9\nG0 X1\nF5 G1 X2\n", options)), "") << "never used";
+    EXPECT_EQ(faults_of(read("F9\nG1 A-3\n", options)), "") << "degrees";
     options.program.starts_in_inch = true;
     EXPECT_DOUBLE_EQ(end_of("G0 X2\n", options)[kX], 50.8);
     EXPECT_EQ(read("G0 X2\nX3\n", options).read_as, std::vector<std::string>{"starts in inch"});
