@@ -33,11 +33,36 @@ constexpr std::size_t kIncludeBytesMax = 1U << 20U;
 struct Kinematics {
     std::string_view name, letters;
 };
-constexpr std::array<Kinematics, 5> kKinematics{{{"trivkins", "XYZABCUVW"},
+constexpr std::array<Kinematics, 8> kKinematics{{{"trivkins", "XYZABCUVW"},
                                                  {"xyzac-trt-kins", "XYZAC"},
                                                  {"xyzbc-trt-kins", "XYZBC"},
                                                  {"xyzab_tdr_kins", "XYZAB"},
-                                                 {"5axiskins", "XYZBCW"}}};
+                                                 {"5axiskins", "XYZBCW"},
+                                                 {"maxkins", "XYZABCUVW"},
+                                                 {"xyzacb_trsrn", "XYZABC"},
+                                                 {"xyzbca_trsrn", "XYZABC"}}};
+
+/// Why other kinematics are not read. Source: LinuxCNC 2.10, src/emc/kinematics and
+/// src/hal/components.
+struct Unread {
+    std::string_view name, reason;
+};
+constexpr std::string_view kParallel =
+    "its struts move one platform together, and bodies here are carried one by one";
+constexpr std::string_view kArm = "its joints are those of an arm, and X, Y and Z are none of them";
+constexpr std::array<Unread, 12> kUnread{
+    {{"genhexkins", kParallel},
+     {"lineardeltakins", kParallel},
+     {"rotarydeltakins", kParallel},
+     {"pentakins", kParallel},
+     {"tripodkins", kParallel},
+     {"genserkins", kArm},
+     {"pumakins", kArm},
+     {"scarakins", kArm},
+     {"scorbot-kins", kArm},
+     {"corexykins", "both motors move X as well as Y, so no joint is the place of a slide"},
+     {"rosekins", "X and Y become a radius and an angle, so a slide has another place than X"},
+     {"millturn", "M428 and M429 exchange the joints of its axes"}}};
 
 struct Value {
     std::string text, file;
@@ -151,6 +176,9 @@ class Reader {
         }
         const std::string letters =
             coordinates == nullptr ? "" : letters_in(without_comment(coordinates->text));
+        if (coordinates != nullptr) {
+            check_letters(*coordinates);
+        }
         read_kinematics(letters);
         read_period();
         if (!out_.faults.empty()) {
@@ -228,14 +256,21 @@ class Reader {
         const auto known = std::find_if(kKinematics.begin(), kKinematics.end(),
                                         [name](const Kinematics& one) { return one.name == name; });
         if (known == kKinematics.end()) {
-            fault("KINS", "KINEMATICS", value,
-                  "trivkins, xyzac-trt-kins, xyzbc-trt-kins, xyzab_tdr_kins or 5axiskins; the "
-                  "joints of others are no slides and turntables: run init on the folder of the "
-                  "STL files and state the limits of each moving part by hand");
+            fault("KINS", "KINEMATICS", value, wanted_kinematics(name));
             return;
         }
         is_trivial_ = known == kKinematics.begin();
         joints_ = known->letters;
+        if (name.ends_with("_trsrn")) {
+            doubt(source_of(*value, "KINS", "KINEMATICS") + ": " +
+                  (name == "xyzbca_trsrn" ? 'A' : 'B') +
+                  " is tilted by the pin nut-angle; state its direction as three numbers");
+        }
+        if (name.ends_with("_trsrn") || words.find("identityfirst") != std::string_view::npos) {
+            doubt(source_of(*value, "KINS", "KINEMATICS") +
+                  ": M429 switches tool centre point control on and M428 off, and simulate reads "
+                  "them the other way; exchange them in the program");
+        }
         constexpr std::string_view kKey = "COORDINATES=";
         const std::string upper_words = upper(words);
         const std::size_t at = upper_words.find(kKey);
@@ -243,6 +278,41 @@ class Reader {
             const std::string_view rest = std::string_view(upper_words).substr(at + kKey.size());
             joints_ = letters_in(rest.substr(0, rest.find_first_of(" \t")));
         }
+    }
+
+    static std::string wanted_kinematics(std::string_view name) {
+        std::string text;
+        for (const Kinematics& one : kKinematics) {
+            text += (text.empty() ? "" : &one == &kKinematics.back() ? " or " : ", ");
+            text += one.name;
+        }
+        const auto unread = std::find_if(kUnread.begin(), kUnread.end(),
+                                         [name](const Unread& one) { return one.name == name; });
+        text += "; ";
+        text += unread == kUnread.end() ? "what its joints are is not known here" : unread->reason;
+        return text +
+               ": run init on the folder of the STL files and state the limits of each moving part "
+               "by hand";
+    }
+
+    /// LinuxCNC passes over other letters, and a misspelt axis would be missing.
+    void check_letters(const Value& coordinates) {
+        for (const char c : upper(without_comment(coordinates.text))) {
+            if (c != ' ' && c != '\t' && kAxisLetters.find(c) == std::string_view::npos) {
+                fault("TRAJ", "COORDINATES", &coordinates,
+                      "letters of X Y Z A B C U V W only; remove " + quoted(std::string(1, c), 8));
+                return;
+            }
+        }
+    }
+
+    /// Whether the planner limits jerk: only that of LinuxCNC 2.10, and only where it is told to.
+    [[nodiscard]] bool limits_jerk() const {
+        const Value* const planner = find("TRAJ", "PLANNER_TYPE");
+        const Value* const most = find("TRAJ", "MAX_LINEAR_JERK");
+        const double least = 1;  // below it LinuxCNC goes back to planner 0
+        return planner != nullptr && without_comment(planner->text) == "1" &&
+               (most == nullptr || number_of(without_comment(most->text)).value_or(0) >= least);
     }
 
     /// Reads the period of the thread that moves the axes and sends the samples.
@@ -498,7 +568,9 @@ class Reader {
         number(section, "MAX_LIMIT", false, axis.max, least, limit);
         number(section, "MAX_VELOCITY", true, axis.speed, least);
         number(section, "MAX_ACCELERATION", true, axis.acceleration, least);
-        number(section, "MAX_JERK", true, axis.jerk, least);
+        if (limits_jerk()) {
+            number(section, "MAX_JERK", true, axis.jerk, least);
+        }
         const bool is_empty = axis.min && axis.max && !(*axis.min < *axis.max);
         const Value* const low = find(section, "MIN_LIMIT");
         const Value* const high = find(section, "MAX_LIMIT");

@@ -121,9 +121,11 @@ const char* errors_text(bool is_rotary) noexcept {
 constexpr double kOverIni = 2;
 constexpr const char* kOverIniHead =
     R"(# LinuxCNC exceeds the limits of its INI file where moves blend, so acceleration_... is twice
-# MAX_ACCELERATION; with kinematics for the tip, speed_... is also twice MAX_VELOCITY. If a drive
-# cannot do that, halve the values of the INI file instead. stopping_... is MAX_ACCELERATION, by
-# which LinuxCNC brakes: state less if a drive with the heaviest workpiece does not keep it.
+# MAX_ACCELERATION; with kinematics for the tip, speed_... is also twice MAX_VELOCITY. Twice is
+# guessed, and LinuxCNC 2.10 goes beyond it: record the bus while programs run, and replace it by
+# what axguard inspect RECORDING --machine THIS-FILE --limits proposes. If a drive cannot do twice,
+# halve the values of the INI file instead. stopping_... is MAX_ACCELERATION, by which LinuxCNC
+# brakes: state less if a drive with the heaviest workpiece does not keep it.
 )";
 
 /// The guessed deceleration of a stop, with its price: so much longer is the stop from full speed
@@ -139,7 +141,7 @@ std::string stopping_guess(const IniAxis& axis, double speed, double stopping) {
 }
 
 /// Travel, speed and acceleration from the control's INI file. The file states no stop, only full
-/// acceleration; without MAX_JERK, LinuxCNC limits no jerk.
+/// acceleration; without MAX_JERK, or with planner 0, LinuxCNC limits no jerk.
 /// @param limits_jerk  whether the file would state one
 std::string known_axis_text(const IniAxis& axis, bool limits_jerk) {
     const char* const unit = axis.is_rotary ? "deg" : "mm";
@@ -159,7 +161,7 @@ std::string known_axis_text(const IniAxis& axis, bool limits_jerk) {
         guesses += axis.min && axis.max ? "" : ", travel";
     }
     guesses += axis.speed ? "" : ", speed";
-    guesses += axis.acceleration ? "" : ", acceleration";
+    guesses += ", acceleration";
     guesses += limits_jerk ? "" : ", jerk";
     const std::string jerk = axis.jerk ? fmt::format("{:.9g}", *axis.jerk) : "none";
     return fmt::format(

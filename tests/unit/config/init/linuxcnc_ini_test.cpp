@@ -26,6 +26,7 @@ MACHINE = mill
 COORDINATES = X Y Z A C
 LINEAR_UNITS = inch
 ANGULAR_UNITS = degree
+PLANNER_TYPE = 1
 [AXIS_X]
 MIN_LIMIT = -12.5
 MAX_LIMIT = +12.5
@@ -122,6 +123,64 @@ TEST(LinuxcncIni, OnlyTrivialKinematicsTakeTheLimitsOfTheTip) {
         EXPECT_EQ(axis_z(kinematics).max, 7.0);
         EXPECT_TRUE(axis_z(kinematics).follows_tip);
     }
+}
+
+// Source: LinuxCNC 2.10, initraj.cc.
+TEST(LinuxcncIni, JerkCountsOnlyWhereThePlannerLimitsIt) {
+    const auto jerk = [](const std::string& planner) {
+        return read_ini(std::string(kHead) + planner + "[AXIS_X]\nMAX_JERK = 100\n", "j.ini")
+            .axes.at(0)
+            .jerk;
+    };
+    EXPECT_FALSE(jerk("")) << "planner 0 is the default, and 2.9 has no other";
+    EXPECT_FALSE(jerk("PLANNER_TYPE = 0\n"));
+    EXPECT_FALSE(jerk("PLANNER_TYPE = 1\nMAX_LINEAR_JERK = 0.9\n")) << "back to planner 0";
+    EXPECT_EQ(jerk("PLANNER_TYPE = 1\n"), 100.0);
+    EXPECT_EQ(jerk("PLANNER_TYPE = 1 # S-curve\nMAX_LINEAR_JERK = 1\n"), 100.0);
+}
+
+TEST(LinuxcncIni, AnUnknownLetterOfCoordinatesIsNamed) {
+    const IniAxes ini = read_ini("[TRAJ]\nCOORDINATES = XYQ\nLINEAR_UNITS = mm\n", "q.ini");
+    ASSERT_EQ(ini.faults.size(), 1U);
+    EXPECT_EQ(ini.faults[0],
+              "q.ini:2: [TRAJ] COORDINATES: invalid value (found \"XYQ\", expected letters of "
+              "X Y Z A B C U V W only). Remove \"Q\".");
+}
+
+// Tilted heads: their joints are slides and turntables, by number through XYZABC or XYZABCUVW.
+TEST(LinuxcncIni, HeadsThatTiltAreReadByTheirJoints) {
+    const auto read = [](const std::string& kinematics) {
+        return read_ini("[TRAJ]\nCOORDINATES = XYZABCW\nLINEAR_UNITS = mm\n[KINS]\nKINEMATICS = " +
+                            kinematics + "\n[JOINT_4]\nMAX_LIMIT = 5\n[JOINT_8]\nMAX_LIMIT = 7\n",
+                        "h.ini");
+    };
+    const IniAxes max = read("maxkins");
+    ASSERT_EQ(max.axes.size(), 7U);
+    EXPECT_EQ(max.axes[4].max, 5.0);
+    EXPECT_EQ(max.axes[6].max, 7.0);
+    EXPECT_TRUE(max.axes[0].follows_tip);
+    EXPECT_TRUE(max.program_doubts.empty());
+    const IniAxes nutating = read("xyzbca_trsrn");
+    EXPECT_EQ(nutating.axes.at(4).max, 5.0);
+    ASSERT_EQ(nutating.program_doubts.size(), 2U);
+    EXPECT_EQ(nutating.program_doubts[0],
+              "h.ini:5: [KINS] KINEMATICS = xyzbca_trsrn: A is tilted by the pin nut-angle; state "
+              "its direction as three numbers");
+    EXPECT_NE(nutating.program_doubts[1].find("M429 switches"), std::string::npos);
+    EXPECT_EQ(read("xyzac-trt-kins sparm=identityfirst").program_doubts.size(), 1U);
+}
+
+TEST(LinuxcncIni, OtherKinematicsAreRefusedWithTheirReason) {
+    const auto says = [](const std::string& kinematics, const char* reason) {
+        const IniAxes ini =
+            read_ini(std::string(kHead) + "[KINS]\nKINEMATICS = " + kinematics + "\n", "k.ini");
+        return ini.faults.size() == 1 && ini.faults[0].find(reason) != std::string::npos;
+    };
+    EXPECT_TRUE(says("tripodkins", "). Its struts move one platform together"));
+    EXPECT_TRUE(says("scarakins coordinates=xyzcab", "). Its joints are those of an arm"));
+    EXPECT_TRUE(says("corexykins", "). Both motors move X as well as Y"));
+    EXPECT_TRUE(says("millturn", "). M428 and M429 exchange the joints"));
+    EXPECT_TRUE(says("mykins", "). What its joints are is not known here"));
 }
 
 TEST(LinuxcncIni, JointsThatAreNoSlidesAreRefused) {
@@ -225,16 +284,16 @@ TEST(LinuxcncIni, WhatDecidesAProgramHasItsLine) {
     }
     EXPECT_EQ(all,
               "start_unit inch mill.ini:6: [TRAJ] LINEAR_UNITS = inch\n"
-              "rotary.C wrapped mill.ini:31: [AXIS_C] WRAPPED_ROTARY = 1\n"
-              "startup_code \"G20 G64 P0.001\" mill.ini:38: [RS274NGC] RS274NGC_STARTUP_CODE = "
+              "rotary.C wrapped mill.ini:32: [AXIS_C] WRAPPED_ROTARY = 1\n"
+              "startup_code \"G20 G64 P0.001\" mill.ini:39: [RS274NGC] RS274NGC_STARTUP_CODE = "
               "G20 G64 P0.001\n"
-              "arc_tolerance_inch 0.0002 mill.ini:39: [RS274NGC] "
+              "arc_tolerance_inch 0.0002 mill.ini:40: [RS274NGC] "
               "CENTER_ARC_RADIUS_TOLERANCE_INCH = 0.0002\n"
-              "program_numbers false mill.ini:40: [RS274NGC] DISABLE_FANUC_STYLE_SUB = 1\n"
-              "g28.X 25.4 mill.ini:37: [RS274NGC] PARAMETER_FILE = mill.var, parameters 5161 on\n"
-              "g28.Z 12.7 mill.ini:37: [RS274NGC] PARAMETER_FILE = mill.var, parameters 5161 on\n"
-              "g28.C 90 mill.ini:37: [RS274NGC] PARAMETER_FILE = mill.var, parameters 5161 on\n"
-              "g30.Z -50.8 mill.ini:37: [RS274NGC] PARAMETER_FILE = mill.var, parameters 5181 "
+              "program_numbers false mill.ini:41: [RS274NGC] DISABLE_FANUC_STYLE_SUB = 1\n"
+              "g28.X 25.4 mill.ini:38: [RS274NGC] PARAMETER_FILE = mill.var, parameters 5161 on\n"
+              "g28.Z 12.7 mill.ini:38: [RS274NGC] PARAMETER_FILE = mill.var, parameters 5161 on\n"
+              "g28.C 90 mill.ini:38: [RS274NGC] PARAMETER_FILE = mill.var, parameters 5161 on\n"
+              "g30.Z -50.8 mill.ini:38: [RS274NGC] PARAMETER_FILE = mill.var, parameters 5181 "
               "on\n");
     // Without the file there are no stored positions, and without a word of it no wrapped axis.
     const IniAxes none = read_ini(test_mill_without_wrapping(), "mill.ini");

@@ -138,9 +138,10 @@ TEST_F(Commands, InitTakesTheAxesOfAnIniFile) {
     EXPECT_TRUE(machine.axes[4].unlimited);
     const std::string text = read(path("m.yaml"));
     EXPECT_TRUE(has(text, "so acceleration_... is twice\n# MAX_ACCELERATION")) << text;
-    EXPECT_TRUE(has(text,
-                    "# GUESS: stopping as the control brakes (half of it: 63.5 mm more from full "
-                    "speed), position_error, following_error\n"))
+    EXPECT_TRUE(
+        has(text,
+            "# GUESS: stopping as the control brakes (half of it: 63.5 mm more from full speed), "
+            "position_error, following_error, acceleration\n"))
         << "X: the INI file says the rest\n"
         << text;
     EXPECT_TRUE(has(
