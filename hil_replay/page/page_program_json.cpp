@@ -42,8 +42,10 @@ void append_column(std::string& out, const std::vector<const ProgramStep*>& step
 }
 
 std::string steps_text(const ProgramLines& lines, const std::vector<const ProgramStep*>& steps) {
-    std::string out = fmt::format("{{\"file\":{},\"count\":{},\"steps\":{{\"time_s\":",
-                                  json_text(lines.program, kFileCharactersMax), lines.steps.size());
+    std::string out =
+        fmt::format("{{\"file\":{},\"read_as\":{},\"count\":{},\"steps\":{{\"time_s\":",
+                    json_text(lines.program, kFileCharactersMax),
+                    json_text(lines.read_as, kFileCharactersMax), lines.steps.size());
     append_column(out, steps, [&out](const ProgramStep& step) {
         fmt::format_to(std::back_inserter(out), "{:.6f}", static_cast<double>(step.time_us) * 1e-6);
     });

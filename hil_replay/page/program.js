@@ -65,6 +65,7 @@ class ProgramList {
     [this.box, this.list] = [byId("program_lines"), byId("program_rows")];
     byId("program_section").hidden = false;
     byId("program_file").textContent = file;
+    byId("program_read_as").textContent = this.program.read_as;
     const kept = steps.line.length;
     byId("program_count").textContent = kept === count ? ""
       : `The program is long: lines that no row of this page is drawn in are left out (${kept} of

@@ -66,6 +66,7 @@ TEST(PageProgram, ALoopHasItsBlocksOnceAndAllItsSteps) {
     const SampledRun run(10);
     ProgramLines lines;
     lines.program = "loop.ngc";
+    lines.read_as = "read as: starts in mm";
     for (const std::uint32_t line : {0U, 7U, 12U, 7U, 12U, 7U}) {
         add_program_step(lines, 1500 * static_cast<std::int64_t>(lines.steps.size()), line);
         lines.steps.back().block = line == 0 ? "" : "G1 X" + std::to_string(line);
@@ -74,6 +75,7 @@ TEST(PageProgram, ALoopHasItsBlocksOnceAndAllItsSteps) {
     EXPECT_EQ(text.find("G1 X7"), text.rfind("G1 X7")) << "a block is written twice";
     const auto program = Json::parse(text)["program"];
     EXPECT_EQ(program["file"], "loop.ngc");
+    EXPECT_EQ(program["read_as"], "read as: starts in mm");
     EXPECT_EQ(program["count"], 6);
     EXPECT_EQ(program["steps"]["time_s"], Json::array({0.0, 0.0015, 0.003, 0.0045, 0.006, 0.0075}));
     EXPECT_EQ(program["steps"]["line"], Json::array({0, 7, 12, 7, 12, 7}));
