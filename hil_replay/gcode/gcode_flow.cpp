@@ -280,6 +280,12 @@ void GcodeFlow::run_sub(const FlowLine& at, std::size_t& next) {
         fault_ = "a subroutine begins inside O" + at.id + "; move it behind its endsub";
         return;
     }
+    const FlowLine* const other = find_after(at, {sub});
+    if (other != nullptr) {
+        fault_ = "O" + at.id + " sub comes again in line " + std::to_string(other->line + 1) +
+                 "; give one of them another name";
+        return;
+    }
     next = end->line + 1;
 }
 

@@ -111,6 +111,10 @@ bool read_item(std::string_view& rest, bool is_first, const GcodeParameters* par
     }
     if (letter != 'N') {
         line.words.push_back({letter, *number, std::string(text)});
+    } else if (*number < 0) {
+        line.fault_word = std::string(text);
+        line.fault = "a line number cannot be negative";
+        return false;
     } else if (!is_first) {
         line.fault_word = std::string(text);
         line.fault = "a line number is only allowed at the start of a line";

@@ -12,7 +12,7 @@
 
 namespace axg {
 
-inline constexpr std::size_t kGcodeLineCharsMax = 4096;
+inline constexpr std::size_t kGcodeLineCharsMax = 253;  // LinuxCNC 2.9, LINELEN
 
 struct GcodeWord {
     char letter = 0;  // upper case

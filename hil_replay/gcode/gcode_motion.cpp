@@ -299,13 +299,34 @@ double GcodeInterpreter::spindle_speed(const char* word) {
     return state_.spindle_rev_min;
 }
 
+namespace {
+
+struct ArcPlane {
+    char first, second, center_first, center_second, center_other;
+};
+
+/// Why this block states no centre or radius in the plane; empty: it does.
+std::string shape_fault(const GcodeBlock& block, const ArcPlane& plane, bool has_absolute_centers) {
+    const bool has_first = block.has(plane.center_first),
+               has_second = block.has(plane.center_second);
+    if (block.has(plane.center_other)) {
+        return std::string(1, plane.center_other) + " is not in the plane of the arc";
+    }
+    if ((has_first || has_second) == block.has('R')) {
+        return block.has('R') ? "found both R and a centre, expected one of them"
+                              : "expected R, or the centre as I J K of the plane";
+    }
+    return has_absolute_centers && has_first != has_second
+               ? "G90.1 is on: expected both words of the centre"
+               : "";
+}
+
+}  // namespace
+
 bool GcodeInterpreter::set_arc(Move& next) {
-    struct Plane {
-        char first, second, center_first, center_second, center_other;
-    };
-    const Plane plane_letters = state_.plane == 170   ? Plane{'X', 'Y', 'I', 'J', 'K'}
-                                : state_.plane == 180 ? Plane{'Z', 'X', 'K', 'I', 'J'}
-                                                      : Plane{'Y', 'Z', 'J', 'K', 'I'};
+    const ArcPlane plane_letters = state_.plane == 170   ? ArcPlane{'X', 'Y', 'I', 'J', 'K'}
+                                   : state_.plane == 180 ? ArcPlane{'Z', 'X', 'K', 'I', 'J'}
+                                                         : ArcPlane{'Y', 'Z', 'J', 'K', 'I'};
     const std::string word = state_.motion == 20 ? "G2" : "G3";
     next.arc.first = axis_of_letter(machine_, plane_letters.first);
     next.arc.second = axis_of_letter(machine_, plane_letters.second);
@@ -316,15 +337,9 @@ bool GcodeInterpreter::set_arc(Move& next) {
                         plane_letters.second + " for this plane");
         return false;
     }
-    if (block_->has(plane_letters.center_other)) {
-        fault(word, std::string(1, plane_letters.center_other) + " is not in the plane of the arc");
-        return false;
-    }
-    const bool has_center =
-        block_->has(plane_letters.center_first) || block_->has(plane_letters.center_second);
-    if (has_center == block_->has('R')) {
-        fault(word, has_center ? "found both R and a centre, expected one of them"
-                               : "expected R, or the centre as I J K of the plane");
+    const std::string no_shape = shape_fault(*block_, plane_letters, state_.has_absolute_centers);
+    if (!no_shape.empty()) {
+        fault(word, no_shape);
         return false;
     }
     if (state_.plane != 170 && is_rotated()) {
@@ -342,7 +357,7 @@ bool GcodeInterpreter::set_arc(Move& next) {
     words.start_second = state_.position[next.arc.second];
     words.end_first = next.target[next.arc.first];
     words.end_second = next.target[next.arc.second];
-    words.has_radius = !has_center;
+    words.has_radius = block_->has('R');
     words.radius = block_->value('R') * scale();
     words.center_first = arc_center(plane_letters.center_first, plane_letters.first);
     words.center_second = arc_center(plane_letters.center_second, plane_letters.second);

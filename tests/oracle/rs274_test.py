@@ -61,6 +61,10 @@ class Canon:
         elif name in ("STRAIGHT_TRAVERSE", "STRAIGHT_FEED"):
             kind = "rapid" if name == "STRAIGHT_TRAVERSE" else "feed"
             self.motions.append((kind, self.machine([float(v) for v in text.split(",")])))
+        elif name == "RIGID_TAP":  # in and out again
+            before = self.motions[-1][1][:6] if self.motions else [0.0] * 6
+            tap = self.machine([float(v) for v in text.split(",")] + [0.0] * 3)
+            self.motions += [("feed", tap[:3] + before[3:]), ("feed", before)]
         elif name == "ARC_FEED":
             self.arc([float(v) for v in text.split(",")])
         elif name == "DWELL":

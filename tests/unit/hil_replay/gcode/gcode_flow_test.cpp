@@ -167,6 +167,11 @@ TEST(GcodeFlow, ALoopWithoutAnEndIsFoundByItsLines) {
                  options);
 }
 
+TEST(GcodeFlow, ASubroutineOfTwoPlacesIsRefused) {
+    expect_fault("o1 sub\no1 endsub\nG0 X1\no01 sub\no1 endsub\n",
+                 "1: O: O1 sub comes again in line 4");
+}
+
 TEST(GcodeFlow, WhatABranchLeavesOutIsNotJudged) {
     EXPECT_EQ(end_of("o1 if [0]\nG0 X1 G87 X2\no1 endif\nG0 X3\n")[kX], 3);
     EXPECT_EQ(end_of("N10 o01 if [1]\nG0 X1\nN20 o1 endif\n")[kX], 1) << "O01 is O1";

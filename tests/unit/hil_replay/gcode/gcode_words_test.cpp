@@ -185,5 +185,13 @@ TEST(GcodeWords, ProgramsOfOtherControlsSayWhichOnce) {
     EXPECT_EQ(foreign_control(""), "");
 }
 
+// As LinuxCNC 2.9 refuses them.
+TEST(GcodeWords, AHalfCentreAndANegativeNumberOfALineAreFaults) {
+    EXPECT_NE(fault_of("G90.1 G0 X10\nG3 X0 Y10 I0 F9\n").find("G3: G90.1 is on: expected both"),
+              std::string::npos);
+    EXPECT_NE(fault_of("N-1 G0 X1\n").find("N-1: a line number cannot be negative"),
+              std::string::npos);
+}
+
 }  // namespace
 }  // namespace axg::test
