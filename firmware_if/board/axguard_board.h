@@ -310,7 +310,8 @@ typedef struct axg_board_axis_ids {
 // @param positions  [axis_count] counts, or AXG_BOARD_NO_POSITION
 // @param ids  [frames] one for each frame
 // @param out  [frames] out
-// @return     frames: axis_count / 2 + 1; 0: no sample yet, or a position beyond 24 bits
+// @return     frames: axis_count / 2 + 1; 0: no sample yet, a position beyond 24 bits, or a tool
+//             number beyond 255, which only flexible frames have
 uint8_t axg_board_encode_classical(axg_board* board, const axg_board_says* says,
                                    const int32_t positions[], const axg_board_axis_ids ids[],
                                    axg_board_can_frame out[]);

@@ -60,7 +60,7 @@ uint8_t axg_board_flags(const axg_board* board, const axg_board_says* says) {
 }
 
 // One slot of three bytes: the axes in order, then the status, then nothing.
-// @return  false: the position does not fit
+// @return  false: the position or the tool number does not fit
 static bool axg_board_put_slot(const axg_board* board, const axg_board_says* says,
                                const int32_t positions[], uint32_t slot, uint8_t to[]) {
     bool fits = true;
@@ -76,6 +76,7 @@ static bool axg_board_put_slot(const axg_board* board, const axg_board_says* say
         }
     } else if (slot == board->options.axis_count) {
         to[0] = says->mode;
+        fits = says->tool <= 0xFFU;
         to[1] = (uint8_t)(says->tool & 0xFFU);
         to[2] = axg_board_flags(board, says);
     } else {

@@ -66,7 +66,7 @@ def scripts_of_frames():
     one.latch(4 * 240 + 1, at=at + 200_001).step("session_due", at=at + 200_001, want=1)
     one.step("session", at=at + 200_001, want=hexed(session(2, 4, 0x00BEEF, 3)))
 
-    says = {"mode": 1, "tool": 0x0102, "homed": 1, "spindle": 0, "rapid": 0, "down": 0, "axis": 0}
+    says = {"mode": 1, "tool": 2, "homed": 1, "spindle": 0, "rapid": 0, "down": 0, "axis": 0}
     counts = [100_000, -50_500, -300_000, 2_712_500, 3_600_001]
 
     def classical(slots, counter, index):
@@ -93,6 +93,11 @@ def scripts_of_frames():
         wrong = list(counts)
         wrong[index] = value
         one.step("classical", **says, counts=wrong, want="")
+    slots = [slot(value) for value in counts[:4]] + [slot(1), [1, 255, 0]]
+    one.step("classical", **{**says, "tool": 255}, counts=counts,
+             want=classical(slots, 2, 41 % 16))
+    for tool in (256, 258, 65535):  # a byte of 258 is tool 2
+        one.step("classical", **{**says, "tool": tool}, counts=counts, want="")
 
     one = script("flexible axis frames", "five axes in 32 bytes")
     one.power_up().step("fd", **says, counts=counts, want="").latch(41, at=0x1_0000_1234)
@@ -103,8 +108,8 @@ def scripts_of_frames():
             body += list((value & 0xFFFFFFFF).to_bytes(4, "little"))
         body += [0x34, 0x12, 0, 0, 2, 1, mode, 42]
         total = crc16(body + [0x81, 0x01])
-        one.step("fd", **{**says, "mode": mode, "spindle": 1, "rapid": 1}, counts=counts,
-                 want=hexed([total & 255, total >> 8, *body]))
+        one.step("fd", **{**says, "tool": 0x0102, "mode": mode, "spindle": 1, "rapid": 1},
+                 counts=counts, want=hexed([total & 255, total >> 8, *body]))
 
     one = script("options that are none", "the board remains stopped")
     for changed in ({"period": 0}, {"period": 100_001}, {"n_max": 0}, {"n_max": 16},

@@ -85,6 +85,19 @@ TEST_F(BoardFrames, APositionHas24BitsOrIsNotKnown) {
     }
 }
 
+TEST_F(BoardFrames, AToolNumberHasAByteOrFlexibleFrames) {
+    says.tool = 255;
+    ASSERT_EQ(classical(), 3);
+    EXPECT_EQ(frames[2].data[6], 255);
+    for (const std::uint16_t beyond : {std::uint16_t{256}, std::uint16_t{257}}) {
+        says.tool = beyond;
+        const std::uint8_t counter = board.axes_counter;
+        EXPECT_EQ(classical(), 0) << beyond << " is not sent as another tool";
+        EXPECT_EQ(board.axes_counter, counter) << "nothing was sent";
+        EXPECT_EQ(axg_board_encode_fd(&board, &says, positions.data(), kSampleIds[0], &frame), 1);
+    }
+}
+
 TEST_F(BoardFrames, AnEndlessAxisIsSentWithinATurn) {
     const std::pair<std::int32_t, std::uint32_t> turns[] = {
         {0, 0},          {3'599'999, 3'599'999}, {3'600'000, 0},          {36'000'005, 5},
