@@ -211,7 +211,7 @@ class Reader {
         return trimmed(text.substr(0, text.find_first_of("#;")));
     }
 
-    /// Reads the length of the machine's units in mm and degrees.
+    /// Reads the length of the machine's linear unit in mm. Angles are in degrees.
     void read_units() {
         constexpr const char* kWanted = "mm or inch";
         const Value* linear = find("TRAJ", "LINEAR_UNITS");
@@ -231,16 +231,10 @@ class Reader {
         const std::string angle =
             angular == nullptr ? "DEG" : upper(without_comment(angular->text));
         const double per_degree = number_of(angle).value_or(0);
-        if (angle == "DEG" || angle == "DEGREE") {
-            angular_ = 1;
-        } else if (angle == "GRAD" || angle == "GON") {
-            angular_ = 0.9;
-        } else if (angle == "RAD" || angle == "RADIAN") {
-            angular_ = 180 / kPi;
-        } else if (per_degree > 0) {
-            angular_ = 1 / per_degree;
-        } else {
-            fault("TRAJ", "ANGULAR_UNITS", angular, "degree, grad or radian");
+        if (angle != "DEG" && angle != "DEGREE" && std::abs(per_degree - 1) > 1e-9) {
+            fault("TRAJ", "ANGULAR_UNITS", angular,
+                  "degree: axguard_stop takes no other unit. Convert speeds and limits of the "
+                  "rotary axes, too");
         }
     }
 
@@ -336,7 +330,7 @@ class Reader {
         axis.name = std::string(1, letter);
         axis.is_rotary = letter >= 'A' && letter <= 'C';
         axis.follows_tip = !is_trivial_;
-        scale_ = axis.is_rotary ? angular_ : linear_;
+        scale_ = axis.is_rotary ? 1 : linear_;
         if (is_trivial_) {
             take(std::string("AXIS_") + letter, axis);
         }
@@ -470,7 +464,7 @@ class Reader {
                 if (const auto stored = parameter(file.text, index)) {
                     char text[40];
                     std::snprintf(text, sizeof text, "%.9g",
-                                  *stored * (axis.is_rotary ? angular_ : linear_));
+                                  *stored * (axis.is_rotary ? 1 : linear_));
                     set(key, axis.name[0], text,
                         source + ", parameters " + std::to_string(first) + " on");
                 }
@@ -587,7 +581,7 @@ class Reader {
     IniAxes out_;
     std::string joints_;  // the axis of each joint
     bool is_trivial_ = true;
-    double linear_ = 1, angular_ = 1, scale_ = 1;
+    double linear_ = 1, scale_ = 1;
 };
 
 }  // namespace

@@ -226,9 +226,21 @@ TEST(LinuxcncIni, UnitsAreNamesOrNumbers) {
     EXPECT_DOUBLE_EQ(axis("LINEAR_UNITS = 1.0").at(0).max.value(), 3);
     EXPECT_DOUBLE_EQ(axis("LINEAR_UNITS = 0.5").at(0).max.value(), 6) << "units in a mm";
     EXPECT_DOUBLE_EQ(axis("LINEAR_UNITS = in").at(0).max.value(), 76.2);
-    EXPECT_DOUBLE_EQ(axis("LINEAR_UNITS = mm\nANGULAR_UNITS = grad").at(1).max.value(), 90);
     EXPECT_DOUBLE_EQ(axis("LINEAR_UNITS = mm\nANGULAR_UNITS = 1.0").at(1).max.value(), 100);
-    EXPECT_NEAR(axis("LINEAR_UNITS = mm\nANGULAR_UNITS = rad").at(1).max.value(), 5729.578, 1e-3);
+}
+
+TEST(LinuxcncIni, AnAngleInAnotherUnitIsRefusedByItsKey) {
+    for (const std::string unit : {"rad", "grad", "0.9"}) {
+        const IniAxes machine =
+            read_ini("[TRAJ]\nCOORDINATES=XA\nLINEAR_UNITS=mm\nANGULAR_UNITS=" + unit +
+                         "\n[AXIS_A]\nMIN_LIMIT=-99999\nMAX_LIMIT=3\n",
+                     "u.ini");
+        ASSERT_EQ(machine.faults.size(), 1U) << unit << ": and no limit is blamed";
+        EXPECT_EQ(machine.faults[0],
+                  "u.ini:4: [TRAJ] ANGULAR_UNITS: invalid value (found \"" + unit +
+                      "\", expected degree: axguard_stop takes no other unit. Convert speeds and "
+                      "limits of the rotary axes, too).");
+    }
 }
 
 TEST(LinuxcncIni, IncludedFilesAreReadWhereTheyStand) {
