@@ -473,6 +473,17 @@ std::string period_text(std::int64_t period_ns) {
     return fmt::format("  sample_us: {}  # SERVO_PERIOD is {} ns{}\n", sample_us, period_ns, rest);
 }
 
+/// Empty where the format [classical] can carry each tool's number.
+std::string format_text(const std::vector<TableTool>& tools) {
+    constexpr std::uint32_t kClassicalMost = 255;
+    const auto large = std::find_if(tools.begin(), tools.end(), [](const TableTool& tool) {
+        return tool.number > kClassicalMost;
+    });
+    return large == tools.end()
+               ? ""
+               : fmt::format("  format: fd  # classical has no room for tool {}\n", large->number);
+}
+
 }  // namespace
 
 std::string machine_file_text(const std::string& name, const std::vector<SurveyedMesh>& meshes,
@@ -496,6 +507,7 @@ std::string machine_file_text(const std::string& name, const std::vector<Surveye
     text +=
         fmt::format("\n# The CAN frames are axguard's own{}; format: describes others.\ncan:\n{}",
                     period_ns == 0 ? ", 1000 a second" : "", period_text(period_ns));
+    text += format_text(ini.tools.tools);
     text +=
         "  permit: 2  # version; board.md is what a board must do\n"
         "  hashes: required  # the board has to send the hashes that axguard check prints\n";

@@ -2,7 +2,6 @@
 // axguard check and axguard init, driven as a person would: a folder of meshes, a machine file, its
 // check.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -12,14 +11,12 @@
 #include "config/compiled/compiled_machine.hpp"
 #include "config/machine/effective_text.hpp"
 #include "core/base/sincos.hpp"
-#include "core/mesh/stl.hpp"
-#include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/machine_options.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
 #include "hil_replay/check/check_report.hpp"
-#include "hil_replay/commands/commands.hpp"
 #include "tests/support/json_value.hpp"
+#include "tests/support/machine_commands.hpp"
 #include "tests/support/machine_text.hpp"
 #include "tests/support/solids.hpp"
 
@@ -27,66 +24,6 @@ namespace axg::test {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct Outcome {
-    int exit_code;
-    std::string out, err;
-};
-
-Outcome axguard(std::vector<std::string> words) {
-    CommandLine line({.name = "axguard", .purpose = "", .version = ""});
-    add_check(line);
-    add_init(line);
-    testing::internal::CaptureStdout();
-    testing::internal::CaptureStderr();
-    const int exit_code = line.parse(std::move(words));
-    std::fflush(stdout);
-    std::fflush(stderr);
-    std::string out = testing::internal::GetCapturedStdout();
-    return {exit_code, std::move(out), testing::internal::GetCapturedStderr()};
-}
-
-bool has(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
-std::string read(const std::string& path) {
-    std::ifstream file(path);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
-
-/// A closed tetrahedron of one unit.
-std::vector<Triangle> tetrahedron() {
-    const Vec3f o{0, 0, 0};
-    const Vec3f x{1, 0, 0};
-    const Vec3f y{0, 1, 0};
-    const Vec3f z{0, 0, 1};
-    return {{o, y, x}, {o, x, z}, {o, z, y}, {x, y, z}};
-}
-
-class Commands : public testing::Test {
-  protected:
-    void SetUp() override { fs::create_directories(folder_ / "meshes"); }
-    void TearDown() override { fs::remove_all(folder_); }
-    std::string path(const std::string& name) const { return (folder_ / name).string(); }
-
-    void write_mesh(const std::string& name,
-                    std::vector<Triangle> triangles = tetrahedron()) const {
-        const std::vector<std::byte> bytes = write_stl(triangles);
-        std::ofstream file(path("meshes/" + name), std::ios::binary);
-        file.write(reinterpret_cast<const char*>(bytes.data()),
-                   static_cast<std::streamsize>(bytes.size()));
-    }
-    void write_meshes() const {
-        for (const char* name : {"base.stl", "saddle.STL", "table.stl", "a_axis.stl", "c.stl",
-                                 "headstock.stl", "cutter.stl", "lamp (left).stl"}) {
-            write_mesh(name);
-        }
-    }
-
-  private:
-    fs::path folder_ = fs::path(testing::TempDir()) / ("axg_commands_" + std::to_string(getpid()));
-};
 
 TEST_F(Commands, InitWritesAFileThatChecksAtOnce) {
     write_meshes();
@@ -110,136 +47,6 @@ TEST_F(Commands, InitWritesAFileThatChecksAtOnce) {
     EXPECT_EQ(chain,
               "->base ->saddle:Y saddle>table:X table>a_axis:A a_axis>c:C ->headstock:Z "
               "headstock>cutter ->lamp__left_ ");
-}
-
-TEST_F(Commands, InitTakesTheAxesOfAnIniFile) {
-    write_meshes();
-    std::ofstream(path("meshes/mill.ini"))
-        << "[TRAJ]\nCOORDINATES = XYZACW\nLINEAR_UNITS = inch\n"
-           "[AXIS_X]\nMIN_LIMIT = -12.5\nMAX_LIMIT = 12\nMAX_VELOCITY = 10\n"
-           "MAX_ACCELERATION = 20\n[AXIS_A]\nMIN_LIMIT = -100\nMAX_LIMIT = 95\n"
-           "MAX_VELOCITY = 360\n[AXIS_C]\nWRAPPED_ROTARY = 1\n"
-           "[EMCMOT]\nSERVO_PERIOD = 976562\n";
-    const Outcome init =
-        axguard({"init", path("meshes/mill.ini"), "-o", path("m.yaml"), "--unit", "mm"});
-    EXPECT_EQ(init.exit_code, kExitClean) << init.err;
-    Machine machine;
-    const auto faults = load_machine(path("m.yaml"), machine);
-    ASSERT_TRUE(faults.empty()) << to_string(faults[0]);
-    ASSERT_EQ(machine.axes.size(), 5U);
-    EXPECT_DOUBLE_EQ(machine.axes[0].min, -317.5);
-    EXPECT_DOUBLE_EQ(machine.axes[0].max, 304.8);
-    EXPECT_DOUBLE_EQ(machine.axes[0].speed_max, 254);
-    // LinuxCNC exceeds it in blends: twice that is declared. It brakes by MAX_ACCELERATION.
-    EXPECT_DOUBLE_EQ(machine.axes[0].acceleration_max, 2 * 508);
-    EXPECT_DOUBLE_EQ(machine.axes[0].stopping_min, 508);
-    EXPECT_NEAR(machine.axes[3].max, 95 * kPi / 180, 1e-12);
-    EXPECT_NEAR(machine.axes[3].speed_max, 2 * kPi, 1e-12);
-    EXPECT_TRUE(machine.axes[4].unlimited);
-    const std::string text = read(path("m.yaml"));
-    EXPECT_TRUE(has(text, "so acceleration_... is twice\n# MAX_ACCELERATION")) << text;
-    EXPECT_TRUE(
-        has(text,
-            "# GUESS: stopping as the control brakes (half of it: 63.5 mm more from full speed), "
-            "position_error, following_error, acceleration\n"))
-        << "X: the INI file says the rest\n"
-        << text;
-    EXPECT_TRUE(has(
-        text, "# GUESS: stopping, position_error, following_error, travel, speed, acceleration\n"))
-        << "Y\n"
-        << text;
-    EXPECT_EQ(machine.can.sample_us, 977U);
-    EXPECT_TRUE(has(text,
-                    "  sample_us: 977  # SERVO_PERIOD is 976562 ns; 0.045 % of the 1 % that "
-                    "the period may be off\n"))
-        << text;
-    const std::string ini = path("meshes/mill.ini");
-    EXPECT_TRUE(has(text, "program:\n  start_unit: inch  # " + ini +
-                              ":3: [TRAJ] LINEAR_UNITS = inch\n  rotary: {C: wrapped}  # " + ini +
-                              ":14: [AXIS_C] WRAPPED_ROTARY = 1\n"))
-        << text;
-    EXPECT_EQ(machine.axes[0].jerk_max, kNoJerkLimit) << "LinuxCNC limits no jerk";
-    EXPECT_TRUE(has(text, "# W of the INI file: give it to the body that it moves\n")) << text;
-    // Meshes elsewhere, and what is wrong with either.
-    fs::rename(path("meshes/mill.ini"), path("mill.ini"));
-    const Outcome beside =
-        axguard({"init", path("mill.ini"), "-o", path("n.yaml"), "--unit", "mm"});
-    EXPECT_EQ(beside.exit_code, kExitInput);
-    EXPECT_TRUE(has(beside.err, "pass their folder with --meshes DIR")) << beside.err;
-    EXPECT_EQ(axguard({"init", path("mill.ini"), "-o", path("n.yaml"), "--unit", "mm", "--meshes",
-                       path("meshes")})
-                  .exit_code,
-              kExitClean);
-    std::ofstream(path("bad.ini")) << "[TRAJ]\nLINEAR_UNITS = mm\n";
-    const Outcome bad = axguard({"init", path("bad.ini"), "-o", path("b.yaml"), "--unit", "mm"});
-    EXPECT_EQ(bad.exit_code, kExitInput);
-    EXPECT_TRUE(has(bad.err,
-                    "bad.ini: [TRAJ] COORDINATES: missing required key (expected the letters of "
-                    "the axes, such as XYZAC)."))
-        << bad.err;
-}
-
-TEST_F(Commands, ToolsOfTheTableAreWrittenAndCompared) {
-    for (const char* name : {"table.stl", "head.stl"}) {
-        write_mesh(name);
-    }
-    std::ofstream(path("meshes/mill.ini")) << "[TRAJ]\nCOORDINATES = XZ\nLINEAR_UNITS = inch\n"
-                                              "[EMCIO]\nTOOL_TABLE = mill.tbl\n";
-    std::ofstream(path("meshes/mill.tbl")) << "T3 Z2 D.5 ; mill\nT4 Z0\n";
-    const Outcome init =
-        axguard({"init", path("meshes/mill.ini"), "-o", path("m.yaml"), "--unit", "inch"});
-    EXPECT_EQ(init.exit_code, kExitClean) << init.err;
-    const auto check = [this](const std::string& table) {
-        std::ofstream(path("t.tbl")) << table;
-        return axguard({"check", path("m.yaml"), "--tool-table", path("t.tbl")});
-    };
-    EXPECT_EQ(check("T3 Z2 D.5").exit_code, kExitClean);
-    EXPECT_FALSE(has(check("T3 Z2 D.5").out, "t.tbl")) << "start_unit of the INI is inch";
-    const Outcome differs = check("T3 Z2.1\n");
-    EXPECT_EQ(differs.exit_code, kExitClean) << "listed, not judged";
-    EXPECT_TRUE(has(differs.out, "t.tbl:1: tool 3: length 53.34 mm, and 50.8 mm in "))
-        << differs.out;
-    fs::remove(path("t.tbl"));
-    EXPECT_EQ(axguard({"check", path("m.yaml"), "--tool-table", path("t.tbl")}).exit_code,
-              kExitInput);
-}
-
-TEST_F(Commands, InitReadsAUrdfFile) {
-    write_mesh("base.stl");
-    std::ofstream(path("m.urdf"))
-        << "<robot><link name='base'><visual><geometry>\n"
-           "<mesh filename='package://m/base.stl' scale='.0254 .0254 "
-           ".0254'/></geometry></visual></link>"
-           "<link name='table'><visual><origin xyz='0 0 .5'/><geometry><box size='.1 .1 .02'/>"
-           "</geometry></visual></link><joint name='x_joint' type='prismatic'>"
-           "<parent link='base'/><child link='table'/><limit lower='-.1' upper='.1'/></joint>"
-           "</robot>";
-    const std::vector<std::string> words{"init", "--urdf", path("m.urdf"), "-o", path("m.yaml")};
-    const Outcome elsewhere = axguard(words);
-    EXPECT_EQ(elsewhere.exit_code, kExitInput);
-    EXPECT_TRUE(has(elsewhere.err, "m.urdf:2: link base.mesh.filename: ")) << elsewhere.err;
-    EXPECT_TRUE(has(elsewhere.err, "Pass it with --meshes DIR.")) << elsewhere.err;
-    auto with = [&words](std::vector<std::string> more) {
-        more.insert(more.begin(), words.begin(), words.end());
-        return axguard(more);
-    };
-    const Outcome init = with({"--meshes", path("meshes")});
-    EXPECT_EQ(init.exit_code, kExitClean) << init.err;
-    Machine machine;
-    const auto faults = load_machine(path("m.yaml"), machine);
-    ASSERT_TRUE(faults.empty()) << to_string(faults[0]);
-    ASSERT_EQ(machine.bodies.size(), 2U);
-    EXPECT_EQ(machine.bodies[1].mesh.shapes.at(0).at.t[2], 490) << "a box begins at its bottom";
-    EXPECT_EQ(machine.axes.at(0).max, 100);
-    EXPECT_EQ(axguard({"check", path("m.yaml")}).exit_code, kExitClean);
-    EXPECT_EQ(with({"--unit", "mm"}).exit_code, kExitUsage);
-    EXPECT_EQ(axguard({"init", "--urdf", path("m.urdf"), "--meshes", path("meshes"), "--force",
-                       "-o", path("meshes/base.stl")})
-                  .exit_code,
-              kExitUsage)
-        << "a mesh is no output";
-    EXPECT_EQ(with({path("meshes")}).exit_code, kExitUsage);
-    EXPECT_EQ(axguard({"init", "-o", path("n.yaml")}).exit_code, kExitUsage);
 }
 
 // A tool drawn standing on its tip would stick into the spindle.
@@ -416,36 +223,6 @@ TEST_F(Commands, InitNamesTheMeshRootWhenTheMeshesLieElsewhere) {
               kExitClean);
 }
 
-// What a tree names under any key is a body; what it does not name is printed; a tree that makes no
-// machine is refused by its own lines, not by those of a file that nobody can open.
-TEST_F(Commands, InitWritesEachPartOfATree) {
-    for (const char* name : {"bed.stl", "ram.stl", "lamp.stl"}) {
-        write_mesh(name);
-    }
-    const std::string bed =
-        "root:\n  id: bed\n  model: meshes/bed.stl\n  type: table\n"
-        "  position: [0, 0, 0, 0, 0, 0]\n  axis: null\n";
-    const std::string ram =
-        "  ram:\n    id: ram\n    model: meshes/ram.stl\n    type: linear\n"
-        "    position: [0, 0, 0, 0, 0, 0]\n    axis: \"-z\"\n";
-    const std::vector<std::string> words{"init",   path("meshes"), "-o",     path("m.yaml"),
-                                         "--unit", "mm",           "--tree", path("t.yml")};
-    std::ofstream(path("t.yml")) << bed << ram;
-    const Outcome run = axguard(words);
-    EXPECT_EQ(run.exit_code, kExitClean) << run.err;
-    EXPECT_EQ(run.err, "lamp.stl: left out: not in " + path("t.yml") + '\n');
-    EXPECT_TRUE(has(read(path("m.yaml")), "    axis: Z\n    direction: [0, 0, -1]\n"));
-    EXPECT_EQ(axguard({"check", path("m.yaml")}).exit_code, kExitClean);
-    fs::remove(path("m.yaml"));
-    std::ofstream(path("t.yml")) << bed;
-    const Outcome one = axguard(words);
-    EXPECT_EQ(one.exit_code, kExitInput);
-    EXPECT_TRUE(has(one.err, path("t.yml") + ":1: root: invalid value (found 1 part")) << one.err;
-    EXPECT_FALSE(has(one.err, "left out") || has(one.err, "m.yaml") || has(one.err, "Rename"))
-        << one.err;
-    EXPECT_FALSE(fs::exists(path("m.yaml")));
-}
-
 // init shows every size; a body in inch among others in mm is listed by check, and printed by every
 // other command that reads the machine.
 TEST_F(Commands, ABodyInInchIsNamedUntilItIsAccepted) {
@@ -509,7 +286,7 @@ TEST_F(Commands, CheckPrintsAllFaultsAndExitsWithThree) {
                                           "margin_mm: 0.5", "margin_mm: -1");
     const Outcome run = axguard({"check", path("m.yaml"), "--json"});
     EXPECT_EQ(run.exit_code, kExitInput);
-    EXPECT_EQ(run.out, "");
+    EXPECT_TRUE(has(run.out, "\"exit_code\": 3,\n  \"fault\": \"")) << run.out;
     EXPECT_TRUE(has(run.err, path("m.yaml") + ":2: nane: unknown key")) << run.err;
     EXPECT_TRUE(has(run.err, path("m.yaml") +
                                  ":23: pairs[0].margin_mm: invalid value (found \"-1\", expected "
@@ -581,30 +358,6 @@ TEST_F(Commands, TheHashChangesWithEachValueAndWithNothingElse) {
     }
     write_mesh("table.stl", other);
     EXPECT_NE(hash_of(text), hash);
-}
-
-// Every pair is checked but those that overlap everywhere, whatever carries what.
-TEST_F(Commands, InitWithAllPairsExcludesPermanentContactOnly) {
-    write_mesh("base.stl", box({-400, -400, -20}, {400, 400, 0}));
-    write_mesh("x.stl", box({-30, -30, 0}, {30, 30, 20}));         // on the base
-    write_mesh("z.stl", box({-30, -30, 420}, {30, 30, 500}));      // above both
-    write_mesh("y.stl", box({100, -300, 230}, {120, -280, 250}));  // on nothing
-    const std::vector<std::string> words{"init",   path("meshes"), "-o",     path("m.yaml"),
-                                         "--unit", "mm",           "--force"};
-    std::vector<std::string> all = words;
-    all.insert(all.end(), {"--pairs", "all"});
-    ASSERT_EQ(axguard(words).exit_code, kExitClean);
-    Machine likely, whole;
-    ASSERT_TRUE(load_machine(path("m.yaml"), likely).empty());
-    const Outcome init = axguard(all);
-    ASSERT_EQ(init.exit_code, kExitClean) << init.err;
-    ASSERT_TRUE(load_machine(path("m.yaml"), whole).empty());
-    EXPECT_GT(likely.exclusions.size(), 1U);
-    ASSERT_EQ(whole.exclusions.size(), 1U) << read(path("m.yaml"));
-    EXPECT_EQ(whole.bodies[whole.exclusions[0].a].name, "base");
-    EXPECT_EQ(whole.bodies[whole.exclusions[0].b].name, "x");
-    EXPECT_EQ(whole.exclusions[0].reason, "REVIEW: in contact at every place of this travel");
-    EXPECT_EQ(whole.pairs.size(), 5U);
 }
 
 // The page marks an axis whose direction or pivot is still a guess.
