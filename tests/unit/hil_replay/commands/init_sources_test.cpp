@@ -118,7 +118,7 @@ TEST_F(Commands, ToolsOfTheTableAreWrittenAndCompared) {
 
 // LinuxCNC's lathes number their tools so; a classical frame has one byte for the number.
 TEST_F(Commands, AToolBeyondOneByteTakesTheFormatThatHasRoom) {
-    write_mesh("head.stl");
+    write_meshes();
     std::ofstream(path("meshes/mill.ini")) << "[TRAJ]\nCOORDINATES = XZ\nLINEAR_UNITS = mm\n"
                                               "[EMCIO]\nTOOL_TABLE = mill.tbl\n";
     std::ofstream(path("meshes/mill.tbl")) << "T255 Z20\nT10001 Z30\n";
