@@ -54,7 +54,8 @@ class BusPlace(Place):
         super().write_hal(guarded, simulation_wait_us)
         hal = self.folder / "paper-trunnion.hal"
         text = hal.read_text(encoding="utf-8")
-        text = text.replace("[AXGUARD]MACHINE --simulation", "[AXGUARD]MACHINE --bus vcan0")
+        text = text.replace(" --simulation ", " --bus vcan0 ")
+        assert "--bus vcan0" in text, "the guard would be in LinuxCNC's own process"
         hal.write_text(text, encoding="utf-8")
 
 
