@@ -39,28 +39,28 @@ const YamlEntry* entry_of(const YamlNode& node, std::string_view key) noexcept {
 
 }  // namespace
 
-MapReader::MapReader(const YamlNode& node, std::string path,
-                     std::span<const std::string_view> known, FaultList& faults)
+MapReader::MapReader(const YamlNode& node, std::string path, std::span<const std::string_view> keys,
+                     FaultList& faults)
     : node_(node), path_(std::move(path)), faults_(faults) {
     if (node.kind == YamlNode::Kind::refused) {
         return;
     }
     if (node.kind != YamlNode::Kind::map) {
-        faults_.add(node.line, path_, shown(node), "a map with the keys " + listed(known));
+        faults_.add(node.line, path_, shown(node), "a map with the keys " + listed(keys));
         return;
     }
     for (const YamlEntry& entry : node.entries) {
-        if (std::find(known.begin(), known.end(), entry.key) != known.end()) {
+        if (std::find(keys.begin(), keys.end(), entry.key) != keys.end()) {
             continue;
         }
-        const std::string_view nearest = nearest_word(entry.key, known);
+        const std::string_view nearest = nearest_word(entry.key, keys);
         if (!nearest.empty()) {
             misspelt_.push_back(nearest);
         }
         const std::string meant = nearest.empty() ? "" : "; did you mean " + quoted(nearest) + '?';
         faults_.add(entry.line, path_of(escaped(entry.key, kNameLengthMax)),
                     std::string{kUnknownKey} + look_alike_note(entry.key),
-                    "one of " + listed(known) + meant);
+                    "one of " + listed(keys) + meant);
     }
 }
 

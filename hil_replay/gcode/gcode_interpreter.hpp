@@ -98,6 +98,11 @@ class GcodeInterpreter {
     [[nodiscard]] double arc_center(char center_letter, char axis_letter) const;
     /// G28, G30: moves to the words, if any, then the named axes, or all, to the stored position.
     void go_home();
+    /// go_home where nothing in the block forbids it. `word`: G28 or G30.
+    void move_home(const char* word);
+    /// Whether this block has a use for its L, P and Q: without a motion word in it,
+    /// make_gcode_block does not have the mode to check these. Reports the first that has none.
+    [[nodiscard]] bool are_letters_taken(bool is_arc_mode);
     void write_offsets();
     void write_work_offset();
     struct Hole;

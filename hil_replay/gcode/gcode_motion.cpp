@@ -22,22 +22,42 @@ std::string print(const char* format, double a) {
     return text;
 }
 
+bool has_arc_word(const GcodeBlock& block, std::int32_t motion_code) {
+    return block.has('J') || (block.has('R') && !is_setting_letter(block, 'R')) ||
+           (motion_code != 331 && block.has('I')) || (!is_thread(motion_code) && block.has('K'));
+}
+
 }  // namespace
+
+void GcodeInterpreter::move_home(const char* word) {
+    if (block_->code(motion) != -1) {
+        fault(word, "conflicts with a motion word in the same block; write two blocks");
+    } else if (state_.control != kNoIndex) {
+        fault(word, "its position means axes; switch tool centre point control off before it");
+    } else {
+        go_home();
+    }
+}
+
+bool GcodeInterpreter::are_letters_taken(bool is_arc_mode) {
+    const bool takes_words = block_->code(path) != -1 || block_->code(non_modal) != -1;
+    for (const char letter : {'L', 'P', 'Q'}) {
+        const bool is_taken =
+            takes_words || (letter == 'P' && is_arc_mode) || is_setting_letter(*block_, letter);
+        if (block_->has(letter) && !is_taken) {
+            fault(std::string(1, letter), letter == 'P' ? "only arcs and canned cycles use it here"
+                                                        : "only canned cycles use it here");
+            return false;
+        }
+    }
+    return true;
+}
 
 void GcodeInterpreter::move() {
     const GcodeBlock& block = *block_;
     const std::int32_t written = block.code(motion);
     if (block.code(non_modal) == 280 || block.code(non_modal) == 300) {
-        const char* const word = block.code(non_modal) == 280 ? "G28" : "G30";
-        if (written != -1) {
-            fault(word, "conflicts with a motion word in the same block; write two blocks");
-            return;
-        }
-        if (state_.control != kNoIndex) {
-            fault(word, "its position means axes; switch tool centre point control off before it");
-            return;
-        }
-        go_home();
+        move_home(block.code(non_modal) == 280 ? "G28" : "G30");
         return;
     }
     const std::int32_t last_motion = state_.motion;
@@ -52,24 +72,14 @@ void GcodeInterpreter::move() {
     const bool has_axis = std::any_of(std::begin(kAxisLetters), std::end(kAxisLetters),
                                       [&](char letter) { return block.has(letter); });
     const bool is_threading = is_thread(state_.motion);
-    const bool has_arc = block.has('J') || (block.has('R') && !is_setting_letter(block, 'R')) ||
-                         (state_.motion != 331 && block.has('I')) ||
-                         (!is_threading && block.has('K'));
+    const bool has_arc = has_arc_word(block, state_.motion);
     const bool is_arc_mode = state_.motion == 20 || state_.motion == 30;
     if (is_cycle && (written != -1 || has_axis || has_arc)) {
         run_cycle(last_motion, has_axis);
         return;
     }
-    // Without a motion word in the block, make_gcode_block does not have the mode to check these.
-    const bool takes_words = block.code(path) != -1 || block.code(non_modal) != -1;
-    for (const char letter : {'L', 'P', 'Q'}) {
-        const bool is_taken =
-            takes_words || (letter == 'P' && is_arc_mode) || is_setting_letter(block, letter);
-        if (block.has(letter) && !is_taken) {
-            fault(std::string(1, letter), letter == 'P' ? "only arcs and canned cycles use it here"
-                                                        : "only canned cycles use it here");
-            return;
-        }
+    if (!are_letters_taken(is_arc_mode)) {
+        return;
     }
     if (has_arc && !is_arc_mode) {
         fault("I J K R", "only G2 and G3 use these, and the motion mode is another");

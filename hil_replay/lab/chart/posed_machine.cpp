@@ -82,16 +82,18 @@ std::optional<AxisSnapshot> PosedMachine::last_clear(AxisSnapshot snapshot, std:
     if (!is_clear(snapshot)) {
         return std::nullopt;
     }
+    const double step = upwards ? kStepMm : -kStepMm;
     double clear = snapshot.position[axis];
-    double blocked;
-    do {
-        clear = snapshot.position[axis];
-        blocked = within_travel(axis, upwards ? clear + kStepMm : clear - kStepMm);
+    double blocked = within_travel(axis, clear + step);
+    for (;; clear = blocked, blocked = within_travel(axis, clear + step)) {
         if (blocked == clear) {
             return std::nullopt;
         }
         snapshot.position[axis] = blocked;
-    } while (is_clear(snapshot));
+        if (!is_clear(snapshot)) {
+            break;
+        }
+    }
     for (double middle = clear + (blocked - clear) / 2; middle != clear && middle != blocked;
          middle = clear + (blocked - clear) / 2) {
         snapshot.position[axis] = middle;
