@@ -136,7 +136,7 @@ class ContactQuery {
     std::vector<QueryResult> results_;
 };
 
-AxisSnapshot snapshot_between(const Approach& approach, double share) {
+AxisSnapshot snapshot_between(const LinearApproach& approach, double share) {
     AxisSnapshot snapshot;
     snapshot.axis_count = static_cast<std::uint32_t>(approach.clear.size());
     for (std::size_t i = 0; i < approach.clear.size(); ++i) {
@@ -147,7 +147,7 @@ AxisSnapshot snapshot_between(const Approach& approach, double share) {
 }
 
 /// The share of the way at which a stop comes, to 2^-kHalvings; clear at the returned share.
-double stop_share(const Approach& approach, ContactQuery& contact) {
+double stop_share(const LinearApproach& approach, ContactQuery& contact) {
     if (!contact.is_clear(snapshot_between(approach, 0))) {
         return 0;
     }
@@ -178,7 +178,7 @@ void measure_contact(const Machine& machine, const ModelScene& scene, const Engi
             out.verdicts.contact[k].position = i;
         }
     }
-    for (const Approach& approach : scene.approaches) {
+    for (const LinearApproach& approach : scene.approaches) {
         out.verdicts.stop_share.push_back(stop_share(approach, contact));
     }
     out.contact = times_of(std::move(us));
@@ -278,8 +278,8 @@ CycleTimes times_of(std::vector<double> cycle_us) {
     return {cycle_us.size(), at(0.5), at(0.99), cycle_us.back()};
 }
 
-std::vector<Approach> find_approaches(const LoadedMachine& loaded, std::uint32_t positions) {
-    std::vector<Approach> out;
+std::vector<LinearApproach> find_approaches(const LoadedMachine& loaded, std::uint32_t positions) {
+    std::vector<LinearApproach> out;
     std::optional<CpuEngine> engine = make_engine(loaded);
     if (!engine) {
         return out;

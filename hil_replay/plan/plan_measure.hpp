@@ -23,7 +23,7 @@ struct CycleTimes {
 [[nodiscard]] CycleTimes times_of(std::vector<double> cycle_us);
 
 /// Two positions between which linear axes alone move: clear at the first, stopped at the second.
-struct Approach {
+struct LinearApproach {
     std::vector<double> clear, stopped;
     double way_mm = 0;  // between the two
 };
@@ -33,8 +33,8 @@ struct ModelScene {
     std::uint32_t positions = 1000;  // spread over the travel
     std::string trace;               // measured too, in stoppable mode; empty: none
     std::uint32_t passes = 3;
-    std::uint32_t multiprocessors = 0;  // of the GPU, where it runs; 0: all
-    std::vector<Approach> approaches;   // found with the whole surfaces
+    std::uint32_t multiprocessors = 0;       // of the GPU, where it runs; 0: all
+    std::vector<LinearApproach> approaches;  // found with the whole surfaces
 };
 
 /// A pair at one of the positions.
@@ -76,8 +76,8 @@ struct ModelMeasurement {
 
 /// Finds positions spread over the travel between which the result of contact mode changes, with
 /// `loaded` as it is.
-[[nodiscard]] std::vector<Approach> find_approaches(const LoadedMachine& loaded,
-                                                    std::uint32_t positions);
+[[nodiscard]] std::vector<LinearApproach> find_approaches(const LoadedMachine& loaded,
+                                                          std::uint32_t positions);
 
 /// False, with `fault` set: no engine, no memory, or a trace that cannot be read.
 /// @param on_gpu  run the engine on a GPU; the CPU's otherwise
