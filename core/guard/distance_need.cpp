@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/machine/cycle_plan.hpp"
 #include "core/machine/kinematics.hpp"
@@ -261,6 +262,28 @@ PairDistances pair_distances(const Machine& machine, const Engine& engine,
     out.available_mm = available_mm(machine, engine, pair, out.within_mm);
     out.open = open_part(machine, engine, pair);
     return out;
+}
+
+std::optional<WorkLists> whole_demand(const Machine& machine, const Engine& engine,
+                                      const UnprovenPair& pair) noexcept {
+    if (engine.run_groups == nullptr || pair.is_blind) {
+        return std::nullopt;
+    }
+    const JointBoxTask& task = pair.task;
+    std::array<Pose, kBodiesMax> moved;
+    move_bodies(machine, task.box.centre, moved);
+    Query query = query_of(task, placed_pair(task, moved),
+                           task.margin_mm + motion_mm(machine, task, task.box));
+    query.is_float_only = true;  // as in a cycle
+    QueryResult result;
+    GroupWork group;
+    for (const WorkListName& one : kWorkLists) {
+        group.share.*one.list = std::numeric_limits<std::uint32_t>::max();
+    }
+    engine({&query, 1}, {&result, 1}, {&group, 1});
+    return result.status == QueryStatus::ok && result.proof == Proof::far
+               ? std::optional(group.used)
+               : std::nullopt;
 }
 
 std::optional<Query> pose_query(const Machine& machine, const AxisSnapshot& snapshot,

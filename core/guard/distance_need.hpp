@@ -84,6 +84,11 @@ struct PairDistances {
 [[nodiscard]] PairDistances pair_distances(const Machine& machine, const Engine& engine,
                                            const UnprovenPair& pair) noexcept;
 
+/// What one query of the whole reach takes from the engine's lists, if it proves the pair. Empty:
+/// it does not, or the engine has no groups.
+[[nodiscard]] std::optional<WorkLists> whole_demand(const Machine& machine, const Engine& engine,
+                                                    const UnprovenPair& pair) noexcept;
+
 /// Contact mode: the query of the pair at the sampled pose. Empty: there is none.
 /// @param room  memory for all queries of that pose
 [[nodiscard]] std::optional<Query> pose_query(const Machine& machine, const AxisSnapshot& snapshot,

@@ -32,13 +32,19 @@ bool take_stage(const Json& value, std::uint32_t stage, CyclePlan& plan) {
 
 }  // namespace
 
+Json lists_json(const WorkLists& lists) {
+    Json out;
+    for (const WorkListName& one : kWorkLists) {
+        out[one.name] = lists.*one.list;
+    }
+    return out;
+}
+
 Json plan_json(const CyclePlan& plan) {
     auto stages = Json::array();
     for (std::uint32_t stage = 0; stage < plan.stages; ++stage) {
         Json one{{"queries", plan.queries[stage]}};
-        for (const WorkListName& list : kWorkLists) {
-            one[list.name] = plan.lists[stage].*list.list;
-        }
+        one.update(lists_json(plan.lists[stage]));
         stages.push_back(std::move(one));
     }
     return {{"form", plan.form == TreeForm::whole ? "whole" : "leaves"},

@@ -9,6 +9,9 @@
 
 namespace axg {
 
+/// Each list by its name.
+[[nodiscard]] nlohmann::ordered_json lists_json(const WorkLists& lists);
+
 [[nodiscard]] nlohmann::ordered_json plan_json(const CyclePlan& plan);
 
 /// The plan in such a value. Empty: it is none, or has no bound that an engine could reserve.

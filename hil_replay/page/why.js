@@ -36,6 +36,11 @@ function whySentences(why) {
     out.push(`halving: ${why.queries} queries; the first part left open needs
               ${mm(why.open.needed_mm)} and has ${mm(why.open.available_mm)}`);
   }
+  if (why.whole_reach) {
+    const lists = Object.entries(why.whole_reach).filter(([, count]) => count > 0);
+    out.push(`one query proves the whole reach, with ${
+      lists.map(([name, count]) => `${name} ${count}`).join(", ") || "the boxes of both surfaces"}`);
+  }
   if (why.full_list) out.push(`a list of the engine was full: ${why.full_list}`);
   if (!why.advice) return out;
   const {settings, tried} = why.advice;

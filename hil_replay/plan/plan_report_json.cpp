@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "firmware_if/cli/plan_json.hpp"
 #include "hil_replay/plan/model_choice.hpp"
 
 namespace axg {
@@ -21,11 +22,8 @@ Json describe(const CycleTimes& times) {
 Json describe(const ChosenPlan& chosen) {
     Json stages = Json::array();
     for (std::uint32_t i = 0; i < chosen.plan.stages; ++i) {
-        const WorkLists& lists = chosen.plan.lists[i];
         Json shown{{"queries", chosen.plan.queries[i]}};
-        for (const WorkListName& one : kWorkLists) {
-            shown[one.name] = lists.*one.list;
-        }
+        shown.update(lists_json(chosen.plan.lists[i]));
         stages.push_back(std::move(shown));
     }
     return {{"stages", std::move(stages)},   {"longest_us", chosen.longest_us},

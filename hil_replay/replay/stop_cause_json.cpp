@@ -5,6 +5,7 @@
 
 #include "core/base/sincos.hpp"
 #include "firmware_if/cli/limit_text.hpp"
+#include "firmware_if/cli/plan_json.hpp"
 #include "firmware_if/explain/format_escapes.hpp"
 #include "hil_replay/replay/replay_csv.hpp"
 
@@ -145,6 +146,9 @@ Json why_json(const Machine& machine, const StopWhy& why) {
         if (why.open) {
             out["open"] = {{"needed_mm", why.open->needed_mm},
                            {"available_mm", why.open->available_mm}};
+        }
+        if (why.whole) {
+            out["whole_reach"] = lists_json(*why.whole);
         }
         add_reach(machine, why, out);
     }

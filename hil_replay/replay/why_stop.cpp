@@ -166,6 +166,7 @@ std::optional<StopWhy> why_of(const WhySources& sources, const StopFacts& stop) 
     why.within_mm = distances.within_mm;
     why.available_mm = distances.available_mm;
     why.open = distances.open;
+    why.whole = whole_demand(machine, engine, pair);
     why.is_list_full = is_overflow(pair.result.status);
     why.full = pair.result.status;
     why.queries = pair.result.queries;

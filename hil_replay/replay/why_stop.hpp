@@ -49,6 +49,7 @@ struct StopWhy {
     double within_mm = 0;                // clearances were measured up to this
     double worst_mm = 0;                 // least clearance found in the reach
     std::optional<OpenPart> open;
+    std::optional<WorkLists> whole;  // of the lists: by one query that proves the whole reach
     NeedRemedies remedies;
     std::string other_limits;  // the limits behind `are_other_limits`
     bool has_reach = false;

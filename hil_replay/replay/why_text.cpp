@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string>
 
+#include "firmware_if/setup/format_plan.hpp"
 #include "hil_replay/replay/replay_csv.hpp"
 #include "hil_replay/replay/why_stop.hpp"
 
@@ -97,6 +98,10 @@ std::string format_parts(const Machine& machine, const StopWhy& why) {
         text += fmt::format(
             "    halving: {} queries; the first part left open needs {:.4f} mm and has {:.4f} mm\n",
             why.queries, why.open->needed_mm, why.open->available_mm);
+    }
+    if (why.whole) {
+        text += fmt::format("    one query proves the whole reach, with {}\n",
+                            format_lists(*why.whole));
     }
     if (why.is_list_full) {
         const char* const list = full_list(why.full);

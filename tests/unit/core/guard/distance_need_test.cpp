@@ -121,6 +121,23 @@ TEST_F(DistanceNeedTest, APairWithinItsMarginNeedsMoreThanThereIs) {
     EXPECT_GT(*remedies.margin_mm, worst_mm - 0.1) << "found to a hundredth of 2 mm";
 }
 
+// The head falls from z: 5.4 mm of reach and 2 mm of margin above the table at -120. What one query
+// takes is said only where it proves the whole reach.
+TEST_F(DistanceNeedTest, TheWholeReachIsProvenByOneQueryOrHasNoDemand) {
+    const Engine engine = scene.engine().engine();
+    const auto demand_at = [&](double z) {
+        UnprovenPair pair = falling(100, 10);
+        pair.task.box.centre[2] += z;
+        return whole_demand(m, engine, pair);
+    };
+    EXPECT_EQ(demand_at(-110), WorkLists{.leaf_pairs = 1}) << "boxes of two leaves are enough";
+    EXPECT_FALSE(demand_at(-113)) << "apart, but nearer than its reach";
+    UnprovenPair blind = falling(100, 10);
+    blind.is_blind = true;
+    EXPECT_FALSE(whole_demand(m, engine, blind));
+    EXPECT_FALSE(whole_demand(m, Engine{}, falling(100, 10)));
+}
+
 // At full speed 20 mm above its margin; at rest there all is well.
 TEST_F(DistanceNeedTest, AFastPairIsProvenMoreSlowlyOrWithOtherLimits) {
     m.pairs = {m.pairs[kHeadAndTable]};
