@@ -146,18 +146,17 @@ std::vector<Setting> settings_of_board(const Machine& machine, const UnprovenPai
         out.push_back(std::move(*slower));
     }
     if (is_plain) {
-        out.push_back({.lines = {"guard: {cap: all_axes}"}, .kind = SettingKind::cap});
+        out.push_back({.lines = {"guard: {cap: per_axis}"}});
+        out.push_back({.lines = {"guard: {cap: all_axes}"}});
         if (may_limit) {
             out.push_back({.lines = {"guard: {cap: all_axes, free_jerk: limited}"}});
         }
-        out.push_back({.lines = {"guard: {cap: per_axis}"}, .kind = SettingKind::cap_per_axis});
     }
     if (machine.can.look_ahead_samples == 0) {
         const std::string can =
             fmt::format("can: {{format: fd, ahead: {{samples: {}}}}}", ahead_samples(machine));
-        out.push_back({.lines = {can}, .kind = SettingKind::ahead});
-        out.push_back(
-            {.lines = {"guard: {promise: path_keeping}", can}, .kind = SettingKind::path_keeping});
+        out.push_back({.lines = {can}});
+        out.push_back({.lines = {"guard: {promise: path_keeping}", can}});
     }
     return out;
 }

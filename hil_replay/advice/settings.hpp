@@ -12,12 +12,8 @@
 
 namespace axg {
 
-/// A setting that an earlier one makes needless is not run.
-enum class SettingKind : std::uint8_t { other, cap, cap_per_axis, ahead, path_keeping };
-
 struct Setting {
     std::vector<std::string> lines;  // AdvisedSetting::lines
-    SettingKind kind = SettingKind::other;
 };
 
 /// Settings that leave the motion as it is, so that its trace shows their effect: limited jerk,
