@@ -502,7 +502,10 @@ std::string machine_file_text(const std::string& name, const std::vector<Surveye
         "\n# What the board guarantees in a stop. jerk_limited: jerk stays limited, and an axis "
         "may "
         "reverse\n# for that; none: no axis reverses in a stop.\n"
-        "guard:\n  stop_reversal: jerk_limited  {}: none where every stop channel promises it\n",
+        "guard:\n  stop_reversal: jerk_limited  {}: none where every stop channel promises it\n"
+        "  # cap: per_axis  # where the board keeps it (the board library does): the guard slows "
+        "the\n  #                # axes near a body and stops later; all_axes: one factor for "
+        "all\n",
         kGuessMark);
     text +=
         fmt::format("\n# The CAN frames are axguard's own{}; format: describes others.\ncan:\n{}",
