@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hil_replay/commands/commands_json.hpp"
 
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
@@ -226,6 +227,14 @@ std::string describe_black_box(const BlackBoxReport& report) {
     out["why"] = report.why ? why_json(machine, *report.why) : Json(nullptr);
     out["damage"] = report.black_box.error();
     return text_of(out);
+}
+
+double number_at(const std::string& document, const char* pointer) {
+    const Json whole = Json::parse(document, nullptr, false);
+    const Json::json_pointer place(pointer);
+    return !whole.is_discarded() && whole.contains(place) && whole.at(place).is_number()
+               ? whole.at(place).get<double>()
+               : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace axg

@@ -56,4 +56,7 @@ struct BlackBoxReport {
 };
 [[nodiscard]] std::string describe_black_box(const BlackBoxReport& report);
 
+/// The number at a JSON pointer of a document; NaN: there is none.
+[[nodiscard]] double number_at(const std::string& document, const char* pointer);
+
 }  // namespace axg

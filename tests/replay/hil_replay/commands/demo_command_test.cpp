@@ -66,7 +66,10 @@ TEST_F(DemoCommand, ShowsBothProgramsAndTheStopInPlainWords) {
           "stop at 40.875 s, line 700: G1 X0.0000 Y106.2623 ",
           "could not be proven clear within the time of a cycle\n",
           "they are at least 4.6609 mm apart, the proof of a stop needs up to 9.7041 mm\n",
-          "without the guard, cutter and plate are in contact 0.198 s later"}) {
+          "without the guard, cutter and plate are in contact 0.198 s later",
+          "3  with guard: {cap: per_axis} a simulated board slows down, and rests 0.12 mm above "
+          "it, "
+          "2.7 s later"}) {
         EXPECT_TRUE(shows(text)) << text << "\n" << screen;
     }
     EXPECT_FALSE(shows("leaf_pairs")) << "how the guard is built is a detail";
@@ -83,7 +86,7 @@ TEST_F(DemoCommand, WritesItsFilesAndKeepsWhatItDoesNotPrint) {
     for (std::size_t at = 0; (at = log.find("$ axguard ", at)) != std::string::npos; ++at) {
         ++commands;
     }
-    EXPECT_EQ(commands, 5U);
+    EXPECT_EQ(commands, 6U);
     for (const char* const text :
          {"samples not proven\n", "samples above\n", "no stop: every checked", "leaf_pairs",
           "of program, ", "STOP at 41.073405 s"}) {
