@@ -49,7 +49,8 @@ template <class Owner>
 void add_scalar(Lines& lines, const std::string& line, const ScalarKey<Owner>& row,
                 const Owner& owner) {
     if (row.number != nullptr) {
-        if (is_finite(owner.*row.number)) {
+        const bool is_there = owner.*row.number != 0 || row.when == KeyLine::always;
+        if (is_there && is_finite(owner.*row.number)) {
             lines.add(line, {owner.*row.number});
         }
         return;
@@ -113,6 +114,8 @@ void add_bodies(Lines& lines, const Machine& machine) {
         const Joint& joint = body.joint;
         lines.add(key + ".direction", {joint.direction.x, joint.direction.y, joint.direction.z});
         lines.add(key + ".pivot_mm", {joint.pivot_mm.x, joint.pivot_mm.y, joint.pivot_mm.z});
+        add_scalars(lines, key + ".", joint_keys(AxisKind::rotary), joint);
+        add_scalars(lines, key + ".", body_keys(), body);
         lines.add(key + ".tool", body.is_tool ? 1U : 0U);
         lines.add(key + ".mesh", body.has_mesh ? 1U : 0U);
         add_pose(lines, key + ".at", body.at);
@@ -128,6 +131,7 @@ void add_tools(Lines& lines, const Machine& machine) {
         const std::string key = "tools." + std::to_string(tool.number);
         lines.add(key + ".name", tool.name);
         lines.add(key + ".length_mm", {tool.length_mm});
+        add_scalars(lines, key + ".", tool_keys(), tool);
         add_pose(lines, key + ".at", tool.mesh.turns ? tool.mesh.at : tool.at);
         if (!tool.mesh.turns) {
             lines.add(key + ".turns", 0U);

@@ -161,10 +161,15 @@ void fill_axes(YamlNode& axes, const Machine& machine) {
     }
 }
 
-void fill_bodies(YamlNode& bodies) {
-    for (YamlEntry& entry : bodies.entries) {
-        YamlNode& body = entry.value;
+void fill_bodies(YamlNode& bodies, const Machine& machine) {
+    for (std::size_t i = 0; i < bodies.entries.size(); ++i) {
+        YamlNode& body = bodies.entries[i].value;
+        const Body& read = machine.bodies[i];
         fill_none(body, {"parent", "axis"});
+        if (read.joint.axis != kNoIndex) {
+            fill_scalars(body, joint_keys(machine.axes[read.joint.axis].kind), read.joint);
+        }
+        fill_scalars(body, body_keys(), read);
         fill_placement(body);
         for (const char* const key : {"tool", "stock", "size_is_right"}) {
             fill(body, key, value_of(false));
@@ -173,9 +178,10 @@ void fill_bodies(YamlNode& bodies) {
     }
 }
 
-void fill_tools(YamlNode& tools) {
-    for (YamlEntry& entry : tools.entries) {
-        YamlNode& tool = entry.value;
+void fill_tools(YamlNode& tools, const Machine& machine) {
+    for (std::size_t i = 0; i < tools.entries.size(); ++i) {
+        YamlNode& tool = tools.entries[i].value;
+        fill_scalars(tool, tool_keys(), machine.tools[i]);
         fill_none(tool, {"name"});
         fill_placement(tool);
         fill(tool, "turns", value_of(true));
@@ -293,9 +299,9 @@ void fill_cycle(YamlNode& top, const CycleRules& cycle) {
 void fill_top(YamlNode& top, const Machine& machine) {
     fill_scalars(top, top_keys(), machine);
     fill_axes(find(top, "axes")->value, machine);
-    fill_bodies(find(top, "bodies")->value);
+    fill_bodies(find(top, "bodies")->value, machine);
     if (YamlEntry* const tools = find(top, "tools")) {
-        fill_tools(tools->value);
+        fill_tools(tools->value, machine);
     } else {
         fill_none(top, {"tools"});
     }

@@ -99,6 +99,24 @@ constexpr std::array<ScalarKey<Axis>, 7> axis_rows(bool is_rotary) {
 }
 constexpr std::array kLinearKeys = axis_rows(false), kRotaryKeys = axis_rows(true);
 
+/// A line only where an error is stated: hashes of files without any stay as they are.
+template <class Owner>
+constexpr ScalarKey<Owner> error_of(const char* key, const char* line, double most,
+                                    double Owner::*member, KeyUnit unit = {}) {
+    ScalarKey<Owner> row = number(key, line, {0, most}, member, unit);
+    row.when = KeyLine::unless_first;
+    return row;
+}
+constexpr double kErrorMmMost = 100, kErrorDegMost = 10;
+constexpr std::array kJointKeys{
+    error_of("direction_error_deg", "direction_error_rad", kErrorDegMost,
+             &Joint::direction_error_rad, kDegrees),
+    error_of("pivot_error_mm", "pivot_error_mm", kErrorMmMost, &Joint::pivot_error_mm)};
+constexpr std::array kBodyKeys{
+    error_of("place_error_mm", "place_error_mm", kErrorMmMost, &Body::place_error_mm)};
+constexpr std::array kToolKeys{
+    error_of("place_error_mm", "place_error_mm", kErrorMmMost, &Tool::place_error_mm)};
+
 using Rules = GuardRules;
 using States = StatedPromises;
 
@@ -190,6 +208,15 @@ ScalarKeys<Machine> top_keys() noexcept {
 }
 ScalarKeys<Axis> axis_keys(AxisKind kind) noexcept {
     return kind == AxisKind::rotary ? kRotaryKeys : kLinearKeys;
+}
+ScalarKeys<Joint> joint_keys(AxisKind kind) noexcept {
+    return ScalarKeys<Joint>(kJointKeys).first(kind == AxisKind::rotary ? 2 : 1);
+}
+ScalarKeys<Body> body_keys() noexcept {
+    return kBodyKeys;
+}
+ScalarKeys<Tool> tool_keys() noexcept {
+    return kToolKeys;
 }
 ScalarKeys<GuardRules> guard_keys() noexcept {
     return kGuardKeys;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "config/machine/machine_keys.hpp"
 #include "config/machine/read_sections.hpp"
 #include "config/text/fault_list.hpp"
 #include "config/text/map_reader.hpp"
@@ -35,7 +36,7 @@ void read_direction(MapReader& reader, Joint& joint) {
 void read_joint(MapReader& reader, MachineDraft& draft, Joint& joint) {
     std::string name;
     if (!reader.has("axis")) {
-        for (const char* key : {"direction", "pivot_mm"}) {
+        for (const char* key : {"direction", "pivot_mm", "direction_error_deg", "pivot_error_mm"}) {
             if (reader.has(key)) {
                 reader.report(key, std::string{key} + " without an axis",
                               "the key axis too, or a fixed body without this key");
@@ -54,11 +55,15 @@ void read_joint(MapReader& reader, MachineDraft& draft, Joint& joint) {
     read_direction(reader, joint);
     const bool is_known = joint.axis != kNoIndex;
     const bool linear = is_known && draft.machine.axes[joint.axis].kind == AxisKind::linear;
-    if (linear && reader.has("pivot_mm")) {
-        reader.report("pivot_mm", "a pivot on the linear axis " + name,
-                      "no such key; only a rotary axis has a pivot");
-        return;
+    for (const char* key : {"pivot_mm", "pivot_error_mm"}) {
+        if (linear && reader.has(key)) {
+            reader.report(key, "a pivot on the linear axis " + name,
+                          "no such key; only a rotary axis has a pivot");
+            return;
+        }
     }
+    read_scalars(reader, joint_keys(linear ? AxisKind::linear : AxisKind::rotary), joint,
+                 draft.machine.states);
     std::array<double, 3> pivot{};
     const Need need = is_known && !linear ? Need::required : Need::optional;
     if (reader.numbers("pivot_mm", need, {-kCoordinateMmMax, kCoordinateMmMax}, pivot)) {
@@ -125,11 +130,12 @@ std::string body_path(const YamlNode& node, std::size_t index) {
 void read_body(const YamlNode& section, std::size_t index, MachineDraft& draft) {
     const YamlEntry& item = section.entries[index];
     const std::string path = body_path(item.value, index);
-    MapReader reader{item.value,
-                     path,
-                     {"name", "parent", "axis", "direction", "pivot_mm", "mesh", "at_mm",
-                      "rotate_deg", "tool", "stock", "size_is_right"},
-                     draft.faults};
+    MapReader reader{
+        item.value,
+        path,
+        {"name", "parent", "axis", "direction", "direction_error_deg", "pivot_mm", "pivot_error_mm",
+         "mesh", "at_mm", "rotate_deg", "place_error_mm", "tool", "stock", "size_is_right"},
+        draft.faults};
     Body body;
     if (!reader.name("name", Need::required, body.name)) {
         draft.names_are_sound = false;
@@ -144,6 +150,10 @@ void read_body(const YamlNode& section, std::size_t index, MachineDraft& draft) 
     read_parent(reader, section, draft, body);
     read_joint(reader, draft, body.joint);
     read_placement(reader, body.at);
+    read_scalars(reader, body_keys(), body, draft.machine.states);
+    draft.machine.pose_errors.are_stated |= body.place_error_mm > 0 ||
+                                            body.joint.pivot_error_mm > 0 ||
+                                            body.joint.direction_error_rad > 0;
     read_surface(reader, path, draft, body);
     draft.machine.bodies.push_back(std::move(body));
     draft.body_lines.push_back(item.line);

@@ -2,6 +2,7 @@
 // The sections `tools` and `first_tool` of a machine file.
 #include <algorithm>
 
+#include "config/machine/machine_keys.hpp"
 #include "config/machine/read_sections.hpp"
 #include "config/machine/read_shapes.hpp"
 #include "config/text/fault_list.hpp"
@@ -76,7 +77,7 @@ void read_tool(const YamlEntry& item, std::size_t index, MachineDraft& draft) {
     MapReader reader{item.value,
                      path,
                      {"number", "name", "length_mm", "mesh", "profile_mm", "segments", "sections",
-                      "turns", "size_is_right", "at_mm", "rotate_deg"},
+                      "turns", "size_is_right", "at_mm", "rotate_deg", "place_error_mm"},
                      draft.faults};
     Tool tool;
     std::uint32_t number = 0;
@@ -94,6 +95,8 @@ void read_tool(const YamlEntry& item, std::size_t index, MachineDraft& draft) {
     reader.text("name", Need::optional, 128, tool.name);
     reader.number("length_mm", Need::required, {0, kCoordinateMmMax}, tool.length_mm);
     read_placement(reader, tool.at);
+    read_scalars(reader, tool_keys(), tool, draft.machine.states);
+    draft.machine.pose_errors.are_stated |= tool.place_error_mm > 0;
     read_tool_surface(reader, path, draft, tool);
     bool turns = true;
     reader.boolean("turns", Need::optional, turns);

@@ -24,7 +24,7 @@ struct KeyUnit {
 /// When the canonical text has a line for a key. An infinite number never has one.
 enum class KeyLine : std::uint8_t {
     always,
-    unless_first,  // a word other than the first, a switch that is on
+    unless_first,  // a word other than the first, a switch that is on, a number other than 0
 };
 
 /// Has the switches for keys that the file states.

@@ -16,11 +16,14 @@ namespace {
 
 constexpr std::size_t kAhead = 8;  // queries
 
-/// Whether the box is finite and within the range of kinematics and of the engine.
+/// Whether the box is finite and within the range of kinematics, of the engine, and of the stated
+/// errors.
 bool is_good(const Machine& machine, const JointBox& box) noexcept {
+    const PoseErrors& errors = machine.pose_errors;
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-        const double limit =
-            machine.axes[i].kind == AxisKind::rotary ? kSinCosArgumentMax : kCoordinateMmMax;
+        const double limit = machine.axes[i].kind == AxisKind::rotary ? kSinCosArgumentMax
+                             : errors.are_stated                      ? errors.within[i]
+                                                                      : kCoordinateMmMax;
         if (!(box.half[i] >= 0 && std::fabs(box.centre[i]) + box.half[i] <= limit)) {  // NaN fails
             return false;
         }

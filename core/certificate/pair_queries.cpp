@@ -105,7 +105,8 @@ void make_contact_queries(const Machine& machine, const AxisSnapshot& snapshot, 
         q.mesh_b = is_known ? pruned_mesh_index(machine, known.surface_b, mesh_b) : mesh_b;
         q.r_mm = pair.margin_mm;
         // Must not be 0: core/collision/containment.hpp continues from the result.
-        q.pose_error_mm = kPlaceErrorMm + deviation_of(machine, pair.a, out.tool) +
+        q.pose_error_mm = kPlaceErrorMm + pose_error_of(machine, i) +
+                          deviation_of(machine, pair.a, out.tool) +
                           deviation_of(machine, pair.b, out.tool);
         q.pose = relative_pose(placed[pair.a], placed[pair.b]);
         out.pair[out.count++] = i;

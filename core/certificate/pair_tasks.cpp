@@ -40,7 +40,7 @@ JointBoxTask pair_task(const Machine& machine, std::uint32_t pair, std::uint32_t
         extent = &extents[mesh];
         task.pose_error_mm += deviation_of(machine, body, tool);
     };
-    task.pose_error_mm = kPlacementErrorMm;
+    task.pose_error_mm = kPlacementErrorMm + pose_error_of(machine, pair);
     task.body_a = p.a;
     task.body_b = p.b;
     place(p.a, p.b, task.mesh_a, task.at_a, task.extent_a);

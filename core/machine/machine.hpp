@@ -57,6 +57,8 @@ struct Joint {
     std::uint32_t axis = kNoIndex;
     Vec3d direction{0, 0, 1};  // unit; +q moves or turns (right hand) the body this way
     Vec3d pivot_mm{};          // a point on the rotary axis
+    // How far the true axis may be from this: its point, and its direction.
+    double pivot_error_mm = 0, direction_error_rad = 0;
 };
 
 enum class LengthUnit : std::uint8_t { mm, inch, m, um };
@@ -92,6 +94,8 @@ struct Body {
     bool is_tool = false;   // its surface is that of the tool in the spindle
     bool is_stock = false;  // the stock: cutting sections of tools may touch it
     bool has_mesh = false;  // a body may be a bare link
+    // No point of it, or of what it carries, is farther from where the file puts it.
+    double place_error_mm = 0;
     MeshSource mesh;
 };
 
@@ -100,6 +104,7 @@ struct Tool {
     std::string name;
     double length_mm = 0;  // spindle nose to tip: G43's offset along the tool axis
     Pose at;  // tool mesh frame to the tool body's; identity if it turns (see MeshSource::at)
+    double place_error_mm = 0;  // as of a body
     MeshSource mesh;
 };
 
@@ -136,6 +141,14 @@ struct TravelProof {
 struct Travel {
     std::array<double, kAxesMax> low{}, high{};  // mm or rad; an endless one is free
     std::vector<TravelProof> proofs;  // [pairs, each with each tool (stop_tasks)]; empty: none
+};
+
+/// What the stated errors of joints and places may take from the distance of a pair
+/// (docs/theory/certificate.md, "Stated errors"). Computed after load, from the meshes.
+struct PoseErrors {
+    bool are_stated = false;                // the machine file states one above 0
+    std::vector<double> mm{};               // [pairs]
+    std::array<double, kAxesMax> within{};  // of linear axes: the largest |position| they hold for
 };
 
 struct Exclusion {
@@ -262,6 +275,7 @@ struct Machine {
     std::vector<Pair> pairs;
     std::vector<PairSurface> pair_surfaces;
     Travel travel;
+    PoseErrors pose_errors;
     std::vector<Exclusion> exclusions;
     std::vector<Tool> tools;
     std::uint16_t first_tool = 0;  // in the spindle while the board reports none; 0: none
@@ -285,6 +299,14 @@ struct Machine {
     return !is_tool           ? machine.bodies[body].mesh.deviation_mm
            : tool == kNoIndex ? 0
                               : machine.tools[tool].mesh.deviation_mm;
+}
+
+/// Infinite where errors are stated and nobody has computed what they are worth.
+[[nodiscard]] inline double pose_error_of(const Machine& machine, std::uint32_t pair) noexcept {
+    const PoseErrors& errors = machine.pose_errors;
+    return !errors.are_stated                         ? 0
+           : errors.mm.size() != machine.pairs.size() ? std::numeric_limits<double>::infinity()
+                                                      : errors.mm[pair];
 }
 
 }  // namespace axg

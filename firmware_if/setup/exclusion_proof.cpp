@@ -10,6 +10,7 @@
 #include "core/collision/containment.hpp"
 #include "core/collision/cpu_engine.hpp"
 #include "firmware_if/setup/near_proof.hpp"
+#include "firmware_if/setup/pose_errors.hpp"
 #include "firmware_if/setup/surface_list.hpp"
 #include "firmware_if/setup/travel_sample.hpp"
 
@@ -277,13 +278,14 @@ std::optional<std::vector<PairOverTravel>> judge_over_travel(const LoadedMachine
     machine.pairs = std::move(pairs);
     machine.pair_surfaces.clear();  // those of checked pairs
     machine.travel = {};
+    machine.pose_errors = find_pose_errors(machine, loaded.meshes);
     std::vector<PairOverTravel> out(machine.pairs.size());
     for (std::uint32_t i = 0; i < machine.pairs.size(); ++i) {
         const bool has_its_tool = has_tool(machine, machine.pairs[i]);
         for (std::uint32_t k = 0; k < tasks_of(machine, machine.pairs[i]); ++k) {
             const std::uint32_t tool = has_its_tool ? k : kNoIndex;
             JointBoxTask task = pair_task(machine, i, tool, surfaces->extents);
-            task.pose_error_mm = kPlacementErrorMm;  // no surface is simplified
+            task.pose_error_mm = kPlacementErrorMm + pose_error_of(machine, i);  // all are whole
             PairOverTravel one;
             if (has_usable_triangles(*surfaces->meshes[task.mesh_a]) &&
                 has_usable_triangles(*surfaces->meshes[task.mesh_b])) {

@@ -19,6 +19,7 @@
 #include "config/text/fault_list.hpp"
 #include "config/text/quote_text.hpp"
 #include "core/base/sincos.hpp"
+#include "firmware_if/setup/pose_errors.hpp"
 #include "firmware_if/setup/travel_proof.hpp"
 
 namespace axg {
@@ -90,6 +91,9 @@ bool load(const std::string& file, const std::string& mesh_root, LoadedMachine& 
         for (const ConfigFault& fault : faults) {
             std::fprintf(messages, "%s\n", to_string(fault).c_str());
         }
+        if (faults.empty()) {
+            out.machine.pose_errors = find_pose_errors(out.machine, out.meshes);
+        }
         return faults.empty();
     }
     LoadedMachine read;
@@ -112,6 +116,7 @@ bool load(const std::string& file, const std::string& mesh_root, LoadedMachine& 
         return false;
     }
     out = std::move(read);
+    out.machine.pose_errors = find_pose_errors(out.machine, out.meshes);
     prune_never_colliding(out, progress);
     return true;
 }

@@ -154,6 +154,18 @@ Json describe_place(const Machine& machine, const Exclusion& one, const TravelWi
     return out;
 }
 
+Json describe_pose_errors(const Machine& machine, const WorstPoseError& worst) {
+    const Pair& pair = machine.pairs[worst.pair];
+    Json parts = Json::array();
+    for (const PoseErrorPart& part : worst.parts) {
+        parts.push_back({{"key", part.key}, {"mm", part.mm}});
+    }
+    return {{"a", machine.bodies[pair.a].name},
+            {"b", machine.bodies[pair.b].name},
+            {"mm", worst.mm},
+            {"parts", std::move(parts)}};
+}
+
 Json describe_exclusions(const Machine& machine, const std::vector<PairOverTravel>& found) {
     Json out = Json::array();
     for (std::size_t i = 0; i < machine.exclusions.size(); ++i) {
@@ -280,6 +292,9 @@ std::string describe_check(const CheckedFile& checked, const CheckReport& report
     out["first_tool"] = machine.first_tool;
     out["pairs"] = describe_pairs(machine);
     out["exclusions"] = describe_exclusions(machine, facts.exclusions);
+    if (facts.pose_errors) {
+        out["pose_errors"] = describe_pose_errors(machine, *facts.pose_errors);
+    }
     out["guard"] = describe_guard(machine, facts);
     if (facts.engine) {
         out["engine"] = describe_engine(*facts.engine, machine.capacities);

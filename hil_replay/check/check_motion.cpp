@@ -132,4 +132,20 @@ void report_motion(CheckReport& report) {
     }
 }
 
+void report_pose_errors(CheckReport& report) {
+    const Machine& machine = report.loaded.machine;
+    if (!machine.pose_errors.are_stated || machine.pairs.empty()) {
+        return;
+    }
+    const WorstPoseError& worst = report.facts.pose_errors.emplace(worst_pose_error(report.loaded));
+    const Pair& pair = machine.pairs[worst.pair];
+    fmt::print(
+        report.words,
+        "\nstated errors: pairs count as nearer than they are drawn, {}-{} most: {:.4f} mm\n",
+        machine.bodies[pair.a].name, machine.bodies[pair.b].name, worst.mm);
+    for (const PoseErrorPart& part : worst.parts) {
+        fmt::print(report.words, "  {:<36} {:.4f} mm\n", part.key, part.mm);
+    }
+}
+
 }  // namespace axg

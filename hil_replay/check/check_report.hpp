@@ -14,6 +14,7 @@
 #include "firmware_if/cli/admitted_plan_json.hpp"
 #include "firmware_if/setup/exclusion_proof.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
+#include "firmware_if/setup/pose_errors.hpp"
 #include "firmware_if/setup/unstated_promises.hpp"
 
 namespace axg {
@@ -58,7 +59,8 @@ struct CheckFacts {
     std::vector<PairContacts> contacts;
     std::optional<AdmittedFacts> admitted;
     std::vector<PairOverTravel> exclusions;  // as Machine::exclusions; empty: no engine
-    std::string plan;                        // as JSON; empty: not requested
+    std::optional<WorstPoseError> pose_errors;
+    std::string plan;  // as JSON; empty: not requested
 };
 
 struct CheckReport {
@@ -81,6 +83,8 @@ void report_frames(CheckReport& report);
 void report_bodies(CheckReport& report);
 void report_tools(CheckReport& report);
 void report_pairs(CheckReport& report);
+/// What the stated errors of joints and places cost; nothing where none is stated.
+void report_pose_errors(CheckReport& report);
 /// Stopping envelopes of stoppable mode.
 void report_guard(CheckReport& report);
 /// Memory, capacities, and which pairs touch at positions spread over the travel.

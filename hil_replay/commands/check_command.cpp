@@ -146,6 +146,7 @@ int check(const CheckOptions& options) {
     report_tools(report);
     report.warnings.insert(report.warnings.end(), differences.begin(), differences.end());
     report_pairs(report);
+    report_pose_errors(report);
     report_guard(report);
     report_engine(report);
     if (!options.plan_of.empty()) {

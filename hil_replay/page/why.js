@@ -10,7 +10,7 @@ const WHY_PARTS = [
   ["position_error_mm", "uncertainty of position"],
   ["speed_uncertainty_mm", "uncertainty of speed"],
   ["margin_mm", "margin to keep"],
-  ["arithmetic_mm", "arithmetic"],
+  ["arithmetic_mm", "arithmetic, stated errors"],
 ];
 
 /** [label, mm, class] of each row; none where the stop is no matter of distance. */

@@ -25,7 +25,7 @@ std::string available_text(const StopWhy& why) {
                        why.available_mm);
 }
 
-std::string parts_text(const StopWhy& why) {
+std::string parts_text(const StopWhy& why, bool has_stated_errors) {
     const DistanceNeed& need = why.need;
     std::string text;
     if (why.cause != WhyCause::margin && why.cause != WhyCause::capacity && why.is_whole) {
@@ -39,9 +39,10 @@ std::string parts_text(const StopWhy& why) {
             need.until_braking_mm, need.braking_mm, need.position_error_mm,
             need.speed_uncertainty_mm);
     }
-    return text + fmt::format("{} {:g}, arithmetic {:.2g} mm",
+    return text + fmt::format("{} {:g}, arithmetic {}{:.2g} mm",
                               why.is_jog ? "clearance to keep in this jog" : "margin",
-                              need.margin_mm, need.arithmetic_mm);
+                              need.margin_mm, has_stated_errors ? "and stated errors " : "",
+                              need.arithmetic_mm);
 }
 
 constexpr std::size_t kBriefAdviceLines = 5;
@@ -86,9 +87,10 @@ std::string format_parts(const Machine& machine, const StopWhy& why) {
         return text + "was not queried: too little is known of the motion to come\n";
     }
     const bool is_enough = why.available_mm > 0 && why.available_mm >= why.need.sum_mm();
-    text += fmt::format(
-        "needs {:.4f} mm and {}{}\n    {}\n", why.need.sum_mm(), available_text(why),
-        is_enough ? ": the work of a cycle was short, not clearance" : "", parts_text(why));
+    text +=
+        fmt::format("needs {:.4f} mm and {}{}\n    {}\n", why.need.sum_mm(), available_text(why),
+                    is_enough ? ": the work of a cycle was short, not clearance" : "",
+                    parts_text(why, machine.pose_errors.are_stated));
     if (why.has_reach) {
         text += why.worst_mm > 0
                     ? fmt::format("    worst case found, to standstill: {:.4f} mm\n", why.worst_mm)

@@ -14,10 +14,10 @@ import sys
 
 from sources import finish, read_text, tracked_files
 
-# Pages, most words of all of them: a limit against growth. The first four sum to 48,900.
+# Pages, most words of all of them: a limit against growth. The first four sum to 49,190.
 SHELVES = {
-    "guide": (["README.md", "docs/guide/*"], 8_900),
-    "theory": (["docs/theory/*"], 12_900),
+    "guide": (["README.md", "docs/guide/*"], 9_010),
+    "theory": (["docs/theory/*"], 13_080),
     "reference": (["docs/reference/*"], 18_600),
     "measurements and decisions": (["docs/measurements/*", "docs/decisions/*"], 8_500),
     "rules": (["CONTRIBUTING.md", "docs/glossary.md", "docs/style.md"], 3_760),

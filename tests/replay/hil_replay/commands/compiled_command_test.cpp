@@ -106,6 +106,32 @@ TEST_F(CompiledCommand, TellsWhatItWrote) {
     EXPECT_GT(said["triangles"], 100);
 }
 
+/// Stated errors cost the compiled machine the same, and the guard stops earlier for them.
+TEST_F(CompiledCommand, StatedErrorsCostTheSameAndStopEarlier) {
+    std::string text = test::content_of(test::kPaperMachine);
+    for (std::size_t at = 0; (at = text.find("    pivot_mm:", at)) != std::string::npos; at += 60) {
+        text.insert(at, "    pivot_error_mm: 0.02\n    direction_error_deg: 0.01\n");
+    }
+    (void)shop->write("errors.yaml", text);
+    const std::string root = " --mesh-root " + test::source_file("config/machines");
+    ASSERT_EQ(shop->run("compile errors.yaml -o errors.axg" + root), kExitClean) << shop->err;
+    ASSERT_EQ(shop->run("check errors.yaml --json=a.json" + root), kExitClean) << shop->err;
+    EXPECT_NE(shop->out.find("\nstated errors: pairs count as nearer than they are drawn, "
+                             "cutter-c most: 0.2249 mm\n  bodies.a.direction_error_deg "),
+              std::string::npos)
+        << shop->out;
+    ASSERT_EQ(shop->run("check errors.axg --json=b.json"), kExitClean) << shop->err;
+    EXPECT_EQ(document("a.json").at("pose_errors"), document("b.json").at("pose_errors"));
+    EXPECT_EQ(document("a.json").at("pose_errors").at("parts").size(), 4U);
+    const std::string replay = " paper.yaml.log --engine cpu --deadline-us 10000000 --advice-s 0";
+    ASSERT_EQ(shop->run("replay errors.axg" + replay + " --json=c.json"), kExitCollision);
+    ASSERT_EQ(shop->run("replay paper.axg" + replay + " --json=d.json"), kExitCollision);
+    const auto stop_at = [](const std::string& name) {
+        return document(name).at("stops").at(0).at("sample").get<double>();
+    };
+    EXPECT_LT(stop_at("c.json"), stop_at("d.json"));
+}
+
 TEST_F(CompiledCommand, RefusesWhatItCannotMean) {
     const std::string yaml = shop->write("other.yaml", test::content_of(test::kPaperMachine));
     const std::string before = content("other.yaml");

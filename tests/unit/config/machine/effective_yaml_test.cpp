@@ -42,6 +42,28 @@ void expect_same(const std::string& text) {
     }
 }
 
+TEST(EffectiveYaml, StatedErrorsReadBackAndChangeTheConfiguration) {
+    const std::string text = test::with(
+        test::with(test::with(test::kSmallMachine, "pivot_mm: [0, 0, -100],",
+                              "pivot_mm: [0, 0, -100], pivot_error_mm: 0.05,"),
+                   "axis: X, direction: [1, 0, 0],",
+                   "axis: X, direction: [1, 0, 0], direction_error_deg: 0.02, place_error_mm: 1,"),
+        "name: ball nose, length_mm: 50,", "name: ball nose, length_mm: 50, place_error_mm: 0.2,");
+    expect_same(text);
+    Machine before, after;
+    ASSERT_TRUE(parse_machine(test::kSmallMachine, "m", before).empty());
+    ASSERT_TRUE(parse_machine(text, "m", after).empty());
+    EXPECT_FALSE(before.pose_errors.are_stated);
+    EXPECT_TRUE(after.pose_errors.are_stated);
+    const std::string lines = effective_text(after);
+    EXPECT_NE(lines.find("bodies.cradle.pivot_error_mm = 0.05\n"), std::string::npos) << lines;
+    EXPECT_NE(lines.find("bodies.slide.place_error_mm = 1\n"), std::string::npos) << lines;
+    EXPECT_NE(lines.find("tools.1.place_error_mm = 0.2\n"), std::string::npos) << lines;
+    EXPECT_NE(lines.find("bodies.slide.direction_error_rad = 0.00034906"), std::string::npos);
+    EXPECT_EQ(effective_text(before).find("_error_mm = 0\n"), std::string::npos)
+        << "hashes of files without errors stay";
+}
+
 TEST(EffectiveYaml, OfEveryShippedMachineReadsBackToTheSame) {
     const std::filesystem::path folder = std::string(AXG_SOURCE_DIR) + "/config/machines";
     int count = 0;

@@ -33,6 +33,20 @@ TEST(MachineFaultsAxes, ZeroSpeedIsRefused) {
               "to 1000000).\n");
 }
 
+TEST(MachineFaultsBodies, ErrorsOfAJointNeedTheJoint) {
+    EXPECT_EQ(faults_of(with(kSmallMachine, "direction: [1, 0, 0], mesh: {file: slide",
+                             "direction: [1, 0, 0], pivot_error_mm: 1, mesh: {file: slide")),
+              "m:12: bodies.slide.pivot_error_mm: invalid value (found a pivot on the linear axis "
+              "X, expected no such key). Only a rotary axis has a pivot.\n");
+    EXPECT_EQ(
+        faults_of(with(kSmallMachine, "{name: base, ", "{name: base, direction_error_deg: 0.1, ")),
+        "m:11: bodies.base.direction_error_deg: invalid value (found direction_error_deg "
+        "without an axis, expected the key axis too, or a fixed body without this key).\n");
+    EXPECT_EQ(faults_of(with(kSmallMachine, "{name: base, ", "{name: base, place_error_mm: -1, ")),
+              "m:11: bodies.base.place_error_mm: invalid value (found \"-1\", expected a number "
+              "from 0 to 100).\n");
+}
+
 TEST(MachineFaultsAxes, UnknownKindIsRefusedAlone) {
     EXPECT_EQ(faults_of(with(kSmallMachine, "kind: linear", "kind: lineal")),
               "m:4: axes.X.kind: invalid value (found \"lineal\", expected one of linear, rotary). "

@@ -286,6 +286,10 @@ TEST(MachineSchema, HasTheRangeOfEachScalarKey) {
     compare(top_keys(), top);
     compare(axis_keys(AxisKind::linear), schema["definitions"]["linear_axis"]["properties"]);
     compare(axis_keys(AxisKind::rotary), schema["definitions"]["rotary_axis"]["properties"]);
+    const Json& body = schema["definitions"]["body"]["properties"];
+    compare(joint_keys(AxisKind::rotary), body);
+    compare(body_keys(), body);
+    compare(tool_keys(), schema["definitions"]["tool"]["properties"]);
     const Json& guard = top["guard"]["properties"];
     compare(guard_keys(), guard);
     compare(jog_keys(), guard["single_jog"]["properties"]);

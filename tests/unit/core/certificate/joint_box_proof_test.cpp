@@ -306,6 +306,16 @@ TEST(JointBoxProver, RefusesBoxesThatAreNoBoxes) {
     }
 }
 
+// The cost of stated errors holds up to a position.
+TEST(JointBoxProver, RefusesBoxesBeyondTheRangeOfStatedErrors) {
+    Slide slide;
+    MarginEngine fake{.far_mm = 1e9};
+    slide.machine.pose_errors = {.are_stated = true, .mm = {0}, .within = {8, 100}};
+    EXPECT_EQ(slide.prove(fake, {}).proof, JointBoxProof::proven);
+    slide.machine.pose_errors.within[0] -= 1e-6;
+    EXPECT_EQ(slide.prove(fake, {}).proof, JointBoxProof::bad_box);
+}
+
 TEST(JointBoxProver, ATaskThatFailsLeavesTheOthersAlone) {
     Slide slide;
     MarginEngine fake{.far_mm = 4.6};

@@ -103,6 +103,21 @@ TEST(PairQueries, TheToolOfTheSnapshotTakesItsSlotAndItsPlace) {
     EXPECT_EQ(known_answer_mesh_index(m), tool_mesh_index(m, 1) + 1);
 }
 
+// Stated errors widen the query; where nobody computed them, the engine refuses it.
+TEST(PairQueries, StatedErrorsCountOrNothingIsProven) {
+    Machine m = machine();
+    const double before_mm = pair_queries(m, snapshot_at(0, 0, 1))->queries[1].pose_error_mm;
+    m.pose_errors = {.are_stated = true, .mm = {0, 0.5, 0}, .within = {}};
+    EXPECT_DOUBLE_EQ(pair_queries(m, snapshot_at(0, 0, 1))->queries[1].pose_error_mm,
+                     before_mm + 0.5);
+    m.pose_errors.mm.clear();
+    Query query = pair_queries(m, snapshot_at(0, 0, 1))->queries[1];
+    query.mesh_a = query.mesh_b = 0;
+    query.pose.t[0] = 1e4;
+    auto engine = test::engine_over({known_answer_mesh()});
+    EXPECT_EQ(test::run_query(*engine, query).proof, Proof::not_proven);
+}
+
 // Simplified meshes stand for whole surfaces only where the deviations of both widen the query.
 TEST(PairQueries, TheDeviationsOfBothSurfacesCount) {
     Machine m = machine();

@@ -124,6 +124,17 @@ TEST_F(StopCertificateTest, TheDeviationsOfBothSurfacesCount) {
                      kPlacementErrorMm + 0.5 + 0.25);
 }
 
+// Stated errors count in every query of a pair; where nobody computed them, nothing is far.
+TEST_F(StopCertificateTest, StatedErrorsCountOrNothingIsProven) {
+    const std::vector<BodyExtent> extents(scene.meshes().size());
+    m.pose_errors = {.are_stated = true, .mm = {0.5, 0.25}, .within = {}};
+    ASSERT_EQ(m.pairs.size(), 2U);
+    EXPECT_DOUBLE_EQ(pair_task(m, 0, 1, extents).pose_error_mm, kPlacementErrorMm + 0.5);
+    EXPECT_DOUBLE_EQ(pair_task(m, 1, kNoIndex, extents).pose_error_mm, kPlacementErrorMm + 0.25);
+    m.pose_errors.mm.pop_back();
+    EXPECT_EQ(pair_task(m, 0, 1, extents).pose_error_mm, std::numeric_limits<double>::infinity());
+}
+
 // The box is what the reach of each axis says, around the newest position; an axis at rest moves
 // little, one whose jerk may jump gets far.
 TEST_F(StopCertificateTest, TheBoxHoldsTheReachOfEveryAxis) {

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/setup/pose_errors.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "config/machine/machine_keys.hpp"
+#include "core/certificate/pair_queries.hpp"
+#include "core/certificate/pose_error.hpp"
+
+namespace axg {
+namespace {
+
+std::vector<BodyExtent> extents_of(const std::vector<Mesh>& meshes) {
+    std::vector<BodyExtent> out;
+    for (const Mesh& mesh : meshes) {
+        out.push_back(extent_of(mesh));
+    }
+    return out;
+}
+
+/// Lists what each key of the table costs the pair when it is the only one above 0.
+/// @param owner  in `machine`
+template <class Owner>
+void add_parts(ScalarKeys<Owner> table, const std::string& path, Owner& owner,
+               const Machine& machine, const MachineMeshes& meshes, WorstPoseError& out) {
+    for (const ScalarKey<Owner>& row : table) {
+        const double value = owner.*row.number;
+        if (value > 0) {
+            owner.*row.number = 0;
+            const double without_mm = find_pose_errors(machine, meshes).mm[out.pair];
+            owner.*row.number = value;
+            out.parts.push_back({path + row.key, out.mm - without_mm});
+        }
+    }
+}
+
+}  // namespace
+
+PoseErrors find_pose_errors(const Machine& machine, const MachineMeshes& meshes) {
+    PoseErrors out{.are_stated = machine.pose_errors.are_stated};
+    if (!out.are_stated) {
+        return out;
+    }
+    out.within = error_range(machine);
+    const std::vector<BodyExtent> bodies = extents_of(meshes.bodies),
+                                  tools = extents_of(meshes.tools);
+    for (const Pair& pair : machine.pairs) {
+        double most_mm = 0;
+        for (std::uint32_t k = 0; k < tasks_of(machine, pair); ++k) {
+            const std::uint32_t tool = has_tool(machine, pair) ? k : kNoIndex;
+            const auto extent = [&](std::uint32_t body) -> const BodyExtent& {
+                return machine.bodies[body].is_tool ? tools[tool] : bodies[body];
+            };
+            most_mm = std::max(most_mm, pose_error_mm(machine, pair, tool, extent(pair.a),
+                                                      extent(pair.b), out.within));
+        }
+        out.mm.push_back(most_mm);
+    }
+    return out;
+}
+
+WorstPoseError worst_pose_error(const LoadedMachine& loaded) {
+    Machine machine = loaded.machine;
+    const std::vector<double>& mm = machine.pose_errors.mm;
+    const auto most = std::max_element(mm.begin(), mm.end());
+    WorstPoseError out{static_cast<std::uint32_t>(most - mm.begin()), *most, {}};
+    for (Body& body : machine.bodies) {
+        const std::string path = fmt::format("bodies.{}.", body.name);
+        add_parts(joint_keys(AxisKind::rotary), path, body.joint, machine, loaded.meshes, out);
+        add_parts(body_keys(), path, body, machine, loaded.meshes, out);
+    }
+    for (Tool& tool : machine.tools) {
+        add_parts(tool_keys(), fmt::format("tools.{}.", tool.number), tool, machine, loaded.meshes,
+                  out);
+    }
+    std::erase_if(out.parts, [](const PoseErrorPart& part) { return part.mm <= 0; });
+    std::stable_sort(out.parts.begin(), out.parts.end(),
+                     [](const auto& a, const auto& b) { return a.mm > b.mm; });
+    return out;
+}
+
+}  // namespace axg
