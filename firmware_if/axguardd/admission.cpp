@@ -162,9 +162,16 @@ AdmissionLine judge_memory(const AdmissionFigures& figures) {
 }  // namespace
 
 const char* to_text(AdmissionCheck check) noexcept {
-    constexpr std::array kNames{"system", "latency", "engine", "cycle", "known_answer", "memory"};
-    static_assert(kNames.size() == kAdmissionCount);
-    return kNames[static_cast<std::size_t>(check)];
+    static_assert(kAdmissionNames.size() == kAdmissionCount);
+    return kAdmissionNames[static_cast<std::size_t>(check)];
+}
+
+AdmissionGauge gauge_of(const AdmissionVerdict& verdict) noexcept {
+    AdmissionGauge gauge{verdict.is_fit(), verdict.margin, 0};
+    for (std::size_t i = 0; i < verdict.lines.size(); ++i) {
+        gauge.failed |= verdict.lines[i].is_passed ? 0U : 1U << i;
+    }
+    return gauge;
 }
 
 bool AdmissionVerdict::is_fit() const noexcept {

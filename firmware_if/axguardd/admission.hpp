@@ -12,6 +12,7 @@
 
 #include "core/guard/time_limits.hpp"
 #include "core/machine/cycle_work.hpp"
+#include "firmware_if/live/live_view.hpp"
 #include "firmware_if/system/fitness.hpp"
 
 namespace axg {
@@ -85,6 +86,8 @@ struct AdmissionVerdict {
     /// All that failed are among these.
     [[nodiscard]] bool is_waived_by(const std::vector<std::string>& names) const;
 };
+
+[[nodiscard]] AdmissionGauge gauge_of(const AdmissionVerdict& verdict) noexcept;
 
 [[nodiscard]] AdmissionVerdict judge_admission(const AdmissionFigures& figures);
 

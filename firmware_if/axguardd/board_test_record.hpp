@@ -9,6 +9,7 @@
 
 #include "core/machine/configuration_hashes.hpp"
 #include "firmware_if/board_test/board_report.hpp"
+#include "firmware_if/live/status_line.hpp"
 
 namespace axg {
 
@@ -32,9 +33,6 @@ struct BoardTestRecord {
 
 [[nodiscard]] std::string describe_record(const BoardTestRecord& record);
 
-enum class RecordState : std::uint8_t { none, this_configuration, another, unreadable };
-[[nodiscard]] const char* to_text(RecordState state) noexcept;
-
 struct FoundRecord {
     RecordState state = RecordState::none;
     BoardTestRecord record;            // where it could be read
@@ -43,6 +41,8 @@ struct FoundRecord {
 };
 /// @param hashes  of the configuration that is about to run
 [[nodiscard]] FoundRecord find_record(const std::string& path, const ConfigurationHashes& hashes);
+
+[[nodiscard]] TestedBoard tested_board(const FoundRecord& found);
 
 /// One line for a person, without a line feed.
 [[nodiscard]] std::string words_of(const FoundRecord& found, const std::string& path);

@@ -154,18 +154,8 @@ std::string describe_record(const BoardTestRecord& record) {
                     {"abandoned", record.abandoned}});
 }
 
-const char* to_text(RecordState state) noexcept {
-    switch (state) {
-        case RecordState::none:
-            return "none";
-        case RecordState::this_configuration:
-            return "this_configuration";
-        case RecordState::another:
-            return "another";
-        case RecordState::unreadable:
-            return "unreadable";
-    }
-    return "unreadable";
+TestedBoard tested_board(const FoundRecord& found) {
+    return {found.state, found.record.serial, found.record.date, found.differs};
 }
 
 FoundRecord find_record(const std::string& path, const ConfigurationHashes& hashes) {

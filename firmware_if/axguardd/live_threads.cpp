@@ -20,9 +20,9 @@
 #include <string_view>
 
 #include "firmware_if/axguardd/format_note.hpp"
-#include "firmware_if/axguardd/status_server.hpp"
 #include "firmware_if/cli/limit_text.hpp"
 #include "firmware_if/guard/live_engine.hpp"
+#include "firmware_if/live/status_server.hpp"
 #include "firmware_if/system/real_time.hpp"
 #include "firmware_if/system/service_notify.hpp"
 #include "firmware_if/system/suspend_watch.hpp"
@@ -55,10 +55,9 @@ struct Shared {
     std::atomic<bool> is_ending{false}, wants_arm{false}, wants_reset{false};
     std::atomic<std::uint32_t> backlog_drops{0};  // frames lost before any socket saw them
     std::atomic<std::uint32_t> period{0};         // of the guard: its cycle goes on
-    std::atomic<bool> wants_view{false};
-    SpscQueue<LiveView, 2> views{};      // to the logger
-    StatusExchange status{};             // with the status thread
-    SpscQueue<BrokenLimit, 4> limits{};  // broken ones, to the logger
+    ViewExchange metrics{};                       // with the logger
+    ViewExchange status{};                        // with the status thread
+    SpscQueue<BrokenLimit, 4> limits{};           // broken ones, to the logger
     // The logger's: no line of the same reason before.
     StopReason limit_reason = StopReason::none;
     std::int64_t limit_due_us = 0;
@@ -125,13 +124,8 @@ LiveView view_of(const Shared& shared, const GuardNode& guard, std::int64_t now_
 void show(Shared& shared, const GuardNode& guard, std::int64_t now_us) noexcept {
     shared.period.store(guard.guard().period);
     const auto view = [&] { return view_of(shared, guard, now_us); };
-    if (shared.wants_view.exchange(false)) {
-        // Full if the logger is slow: it requests again.
-        [[maybe_unused]] const bool is_pushed = shared.views.push(view());
-    }
-    if (shared.options.why != nullptr) {
-        shared.options.why->set_stop(guard.stop_query());
-    }
+    answer(shared.metrics, view);
+    shared.options.desk->set_stop(guard);
     answer(shared.status, view);
 }
 
@@ -200,9 +194,8 @@ void* run_engine(void* argument) {
             // Full only if the bus thread is blocked: then no thread can use a result.
             [[maybe_unused]] const bool is_pushed = shared.queues.results.push(live_result);
             wake(shared.wake_bus);
-            if (shared.options.why != nullptr) {  // the permit or the stop is on its way
-                shared.options.why->note(live_result, shared.chain);
-            }
+            // The permit or the stop is on its way.
+            shared.options.desk->note(live_result, shared.chain);
         });
     }
     return nullptr;
@@ -281,50 +274,15 @@ void write_notes(Shared& shared) {
     shared.dump.serve(monotonic_us());
 }
 
-/// Replaces the metrics file by the metrics of about now.
-class MetricsWriter {
-  public:
-    explicit MetricsWriter(const ThreadOptions& options)
-        : bus_(options.bus), file_(options.metrics_file) {}
-    ~MetricsWriter() { file_.remove(); }  // those of a guard that has ended would mislead
-    MetricsWriter(const MetricsWriter&) = delete;
-    MetricsWriter& operator=(const MetricsWriter&) = delete;
-
-    void work(Shared& shared, std::int64_t now_us) noexcept {
-        LiveView view;
-        while (shared.views.pop(view)) {
-            const std::size_t size = write_metrics(view, bus_, text_);
-            if (!file_.replace({text_.data(), size}) && !has_failed_) {
-                has_failed_ = true;
-                std::fprintf(
-                    stderr,
-                    "axguardd: metrics: %s: %s. Pass a file in a writable folder with --metrics.\n",
-                    file_.path().c_str(), std::strerror(errno));
-            }
-        }
-        if (file_.is_wanted() && now_us >= due_us_) {
-            due_us_ = now_us + kMetricsPeriodUs;
-            shared.wants_view.store(true);
-        }
-    }
-
-  private:
-    std::string bus_;
-    ReplacedFile file_;
-    std::int64_t due_us_ = 0;
-    bool has_failed_ = false;
-    std::array<char, 16384> text_{};
-};
-
 void* run_logger(void* argument) {
     Shared& shared = *static_cast<Shared*>(argument);
     const int drops = open("/proc/self/net/softnet_stat", O_RDONLY | O_CLOEXEC);
     const std::uint32_t first = drops < 0 ? 0 : read_backlog_drops(drops);
-    MetricsWriter metrics(shared.options);
+    MetricsWriter metrics(shared.options.bus, shared.options.metrics_file);
     while (!shared.is_ending.load()) {
         write_notes(shared);
         shared.service.work(shared.period.load(), monotonic_us());
-        metrics.work(shared, monotonic_us());
+        metrics.work(shared.metrics, monotonic_us());
         if (drops >= 0) {
             shared.backlog_drops.store(read_backlog_drops(drops) - first);
         }
@@ -339,8 +297,12 @@ void* run_logger(void* argument) {
 void* run_status(void* argument) {
     Shared& shared = *static_cast<Shared*>(argument);
     setpriority(PRIO_PROCESS, 0, kStatusNice);  // of this thread alone, on Linux
-    serve_status(*shared.options.status_socket, *shared.options.status_line, shared.status,
-                 shared.options.why, shared.is_ending);
+    StopLog log;
+    serve_status({.socket = shared.options.status_socket,
+                  .line = shared.options.status_line,
+                  .desk = shared.options.desk,
+                  .log = &log},
+                 shared.status, shared.is_ending);
     return nullptr;
 }
 
@@ -409,12 +371,11 @@ LiveEnd run_live(const Machine& machine, GuardChain& chain, SocketCan& wire, Lat
     log_refusal("memory", lock_memory());
     std::array<pthread_t, kThreads> threads{};
     constexpr std::array kRuns{&run_engine, &run_logger, &run_bus, &run_status};
-    const std::size_t wanted = options.status_socket != nullptr ? kThreads : kThreads - 1;
     std::size_t count = 0;
-    while (count < wanted && start(threads[count], kRuns[count], shared)) {
+    while (count < kThreads && start(threads[count], kRuns[count], shared)) {
         ++count;
     }
-    if (count == wanted) {
+    if (count == kThreads) {
         serve_signals(shared);
     } else {
         shared.end.fault = "cannot start a thread. Close other programs, or see ulimit -u.";

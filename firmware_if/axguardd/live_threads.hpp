@@ -7,13 +7,13 @@
 
 #include <string>
 
-#include "firmware_if/axguardd/black_box_dump.hpp"
-#include "firmware_if/axguardd/metrics.hpp"
-#include "firmware_if/axguardd/status_json.hpp"
 #include "firmware_if/can/socket_can.hpp"
+#include "firmware_if/explain/stop_desk.hpp"
 #include "firmware_if/guard/guard_chain.hpp"
 #include "firmware_if/guard/guard_node.hpp"
-#include "firmware_if/guard/why_desk.hpp"
+#include "firmware_if/live/black_box_dump.hpp"
+#include "firmware_if/live/metrics.hpp"
+#include "firmware_if/live/status_line.hpp"
 #include "firmware_if/system/latch_file.hpp"
 #include "firmware_if/system/status_socket.hpp"
 
@@ -32,7 +32,7 @@ struct ThreadOptions {
     // State for every user; null: no socket.
     const StatusSocket* status_socket = nullptr;
     const StatusLine* status_line = nullptr;
-    WhyDesk* why = nullptr;  // null: the line has no distances
+    StopDesk* desk = nullptr;  // explains stops, for the log and the status
 };
 
 /// How a run ended.

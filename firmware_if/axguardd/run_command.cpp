@@ -75,14 +75,10 @@ ThreadOptions with_black_box(const RunArguments& arguments, const LoadedMachine&
                              PulseLine* line) {
     ThreadOptions threads = arguments.threads;
     threads.guard.line = line;
-    const std::string hash = configuration_hash(loaded.machine, loaded.meshes);
-    std::copy_n(hash.begin(), std::min(hash.size(), threads.black_box.configuration.size()),
-                threads.black_box.configuration.begin());
+    threads.black_box =
+        black_box_header(loaded, arguments.mode == "stoppable", threads.guard.accepts_local);
     threads.compares_hashes = loaded.machine.can.hashes_in_id != 0;
     threads.guard.hashes = configuration_hashes(loaded.machine, loaded.meshes);
-    threads.black_box.is_stoppable = arguments.mode == "stoppable";
-    threads.black_box.plan = cycle_plan(loaded.machine, stop_tasks(loaded.machine));
-    threads.black_box.accepts_local = threads.guard.accepts_local;
     threads.dumps.folder = arguments.state_dir;
     threads.dumps.bus = arguments.bus;
     return threads;
@@ -218,15 +214,13 @@ int guard_bus(const RunArguments& arguments, LoadedMachine& loaded) {
     if (!open_status(arguments, status_socket)) {
         return kExitInput;
     }
-    const StatusLine status_line(machine, arguments.bus, arguments.mode,
+    const std::string file = std::filesystem::path(arguments.machine.file).filename().string();
+    const StatusLine status_line(machine, file, arguments.bus, arguments.mode,
                                  configuration_hash(machine, loaded.meshes),
-                                 log_board_test(arguments, loaded));
+                                 tested_board(log_board_test(arguments, loaded)));
     ThreadOptions threads = with_black_box(arguments, loaded, line ? &*line : nullptr);
     // Created before the admission, which counts its memory.
-    std::optional<CpuEngine> status_engine =
-        status_socket.is_open() ? CpuEngine::over_trees(engines.cpu->trees(), machine.capacities)
-                                : std::nullopt;
-    WhyDesk why(machine, status_engine ? status_engine->engine() : Engine{});
+    StopDesk desk(loaded, *engines.cpu, *engines.containment_test, file);
     if (!is_admitted(arguments, loaded, engines, threads.admission)) {
         return kExitUnfit;
     }
@@ -234,7 +228,7 @@ int guard_bus(const RunArguments& arguments, LoadedMachine& loaded) {
         threads.status_socket = &status_socket;
     }
     threads.status_line = &status_line;
-    threads.why = threads.status_socket != nullptr ? &why : nullptr;
+    threads.desk = &desk;
     const Engine engine = engines.engine();
     GuardChain chain(machine, engine, *engines.containment_test, parts.chain());
     log_start(arguments, machine);

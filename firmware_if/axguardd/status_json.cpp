@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
-#include <utility>
+#include <span>
 #include <vector>
 
 #include "config/text/quote_text.hpp"
@@ -19,130 +19,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Writes on while there is room, which the longest line leaves.
-class Line {
-  public:
-    explicit Line(std::span<char> out) noexcept : out_(out) {}
-
-    template <class... Values>
-    void put(fmt::format_string<Values...> text, Values&&... values) {
-        const auto end = fmt::format_to_n(out_.data() + size_, out_.size() - size_, text,
-                                          std::forward<Values>(values)...);
-        size_ += std::min(end.size, out_.size() - size_);
-    }
-    [[nodiscard]] std::size_t size() const noexcept { return size_; }
-
-  private:
-    std::span<char> out_;
-    std::size_t size_ = 0;
-};
-
-/// Names of bodies need no escape: docs/reference/machine-file.md.
-void put_pair(Line& line, const char* key, const Machine& machine, std::uint32_t number) {
-    if (number >= machine.pairs.size()) {
-        line.put(",\"{}\":null", key);
-        return;
-    }
-    const Pair& pair = machine.pairs[number];
-    line.put(",\"{}\":[\"{}\",\"{}\"]", key, machine.bodies[pair.a].name,
-             machine.bodies[pair.b].name);
-}
-
-void put_mm(Line& line, const char* key, double value_mm) {
-    line.put(",\"{}\":{:.4f}", key, value_mm);
-}
-
-/// Keys of "why" in docs/reference/json.md; null: of another kind of reach.
-void put_parts(Line& line, const PairWhy& why) {
-    const DistanceNeed& need = why.distances.need;
-    const std::array<std::pair<const char*, double>, 4> parts{
-        {{"until_braking_mm", need.until_braking_mm},
-         {"braking_mm", need.braking_mm},
-         {"position_error_mm", need.position_error_mm},
-         {"speed_uncertainty_mm", need.speed_uncertainty_mm}}};
-    if (why.is_whole) {
-        put_mm(line, "to_standstill_mm", need.until_braking_mm);
-    } else {
-        line.put(",\"to_standstill_mm\":null");
-    }
-    for (const auto& [key, value_mm] : parts) {
-        if (why.is_whole || why.is_pose) {
-            line.put(",\"{}\":null", key);
-        } else {
-            put_mm(line, key, value_mm);
-        }
-    }
-    put_mm(line, "margin_mm", need.margin_mm);
-    line.put(",\"arithmetic_mm\":{:.4g}", need.arithmetic_mm);  // of 1e-7 mm and more
-}
-
-void put_why(Line& line, const char* key, const Machine& machine,
-             const std::optional<PairWhy>& why) {
-    if (!why) {
-        line.put(",\"{}\":null", key);
-        return;
-    }
-    const PairDistances& distances = why->distances;
-    line.put(",\"{}\":{{\"needed_mm\":{:.4f}", key, distances.need.sum_mm());
-    put_mm(line, "available_mm", distances.available_mm);
-    put_mm(line, "within_mm", distances.within_mm);
-    put_parts(line, *why);
-    line.put(",\"list_full\":{},\"jog\":{}", why->is_list_full, why->is_jog);
-    if (why->tool < machine.tools.size()) {
-        line.put(",\"tool\":{}", machine.tools[why->tool].number);
-    } else {
-        line.put(",\"tool\":null");
-    }
-    if (distances.open) {
-        line.put(",\"open\":{{\"needed_mm\":{:.4f}", distances.open->needed_mm);
-        put_mm(line, "available_mm", distances.open->available_mm);
-        line.put("}}}}");
-    } else {
-        line.put(",\"open\":null}}");
-    }
-}
-
-void put_state(Line& line, const LiveView& view, const GuardWhy& why, const Machine& machine,
-               std::int64_t now_us) {
-    const bool is_stopped = view.phase == GuardPhase::stopped;
-    line.put(",\"age_ms\":{},\"phase\":\"{}\",\"phase_ms\":{}",
-             std::max<std::int64_t>(0, now_us - view.time_us) / 1000, to_text(view.phase),
-             std::max<std::int64_t>(0, view.time_us - view.phase_us) / 1000);
-    line.put(",\"cause\":\"{}\",\"reason\":\"{}\"",
-             to_text(is_stopped ? view.cause : GuardFault::none),
-             to_text(is_stopped ? view.reason : StopReason::none));
-    put_pair(line, "pair", machine, is_stopped ? view.pair : kNoIndex);
-    put_why(line, "why", machine, is_stopped ? why.stop : std::nullopt);
-    line.put(",\"withheld\":\"{}\",\"withheld_reason\":\"{}\"", to_text(view.withheld.why),
-             to_text(view.withheld.reason));
-    put_pair(line, "withheld_pair", machine, view.withheld.pair);
-    put_why(line, "withheld_why", machine, why.withheld);
-    line.put(",\"stands\":{},\"confirmed\":{}", view.stands, is_stopped && view.is_confirmed);
-    if (has_sample_counter(machine.can)) {
-        line.put(",\"session\":{}", view.has_session);
-    } else {
-        line.put(",\"session\":null");
-    }
-    line.put(",\"sample_us\":{}", machine.can.sample_us);
-    if (view.input.measured_period_ns != 0) {
-        line.put(",\"period_us\":{:.3f}",
-                 static_cast<double>(view.input.measured_period_ns) / 1000);
-    } else {
-        line.put(",\"period_us\":null");
-    }
-    line.put(",\"hashes\":\"{}\"", view.compares_hashes ? "required" : "none");
-}
-
-void put_counters(Line& line, const LiveView& view) {
-    const LiveCounters& counters = view.counters;
-    line.put(",\"snapshots\":{},\"permits\":{},\"permits_slow\":{},\"stop_frames\":{},\"late\":{}",
-             counters.snapshots, counters.permits, counters.slow, counters.stops, counters.late);
-    line.put(",\"refused\":{},\"send_faults\":{},\"samples_lost\":{},\"frames_dropped\":{}",
-             counters.refused, counters.send_faults, view.input.samples_lost, view.frames_dropped);
-    line.put(",\"operator_acts\":{},\"operator_refused\":{},\"operator_ignored\":{}",
-             counters.operator_acts, counters.operator_refused, counters.operator_ignored);
-}
-
 /// Parts of a need that not every reach has.
 struct WhyPart {
     const char* key;
@@ -154,6 +30,7 @@ constexpr std::array<WhyPart, 5> kWhyParts{{{"to_standstill_mm", "motion to stan
                                             {"position_error_mm", "uncertainty of position"},
                                             {"speed_uncertainty_mm", "of speed"}}};
 
+constexpr std::size_t kWayOutMax = 500;  // characters: a jog each way for every axis
 constexpr std::uint64_t kHeldMs = 1000;  // a bus thread that turns has shown more since
 
 /// Text of a line that passed is_status, escaped: foreign text that a terminal shows.
@@ -251,23 +128,29 @@ struct StatusKey {
     IsOfType is_of_type;
 };
 /// In every line, and after the phase in a line with a view.
-constexpr std::array<StatusKey, 7> kHeadKeys{{{"axguardd", is_text},
+constexpr std::array<StatusKey, 8> kHeadKeys{{{"axguardd", is_text},
                                               {"bus", is_text},
                                               {"machine", is_text},
+                                              {"file", is_text},
                                               {"configuration_sha256", is_text},
                                               {"mode", is_text},
                                               {"board_test", is_board_test},
                                               {"phase", is_text}}};
-constexpr std::array<StatusKey, 28> kViewKeys{{{"age_ms", is_count},
+constexpr std::array<StatusKey, 33> kViewKeys{{{"age_ms", is_count},
                                                {"phase_ms", is_count},
                                                {"cause", is_text},
                                                {"reason", is_text},
                                                {"pair", is_pair_or_null},
                                                {"why", is_why_or_null},
+                                               {"program_line", is_count_or_null},
+                                               {"unknown_tool", is_count_or_null},
+                                               {"way_out", is_text_or_null},
                                                {"withheld", is_text},
                                                {"withheld_reason", is_text},
                                                {"withheld_pair", is_pair_or_null},
                                                {"withheld_why", is_why_or_null},
+                                               {"tool", is_count_or_null},
+                                               {"guarded_tool", is_count_or_null},
                                                {"stands", is_flag},
                                                {"confirmed", is_flag},
                                                {"session", is_flag_or_null},
@@ -314,8 +197,11 @@ std::optional<GuardFault> cause_of(const Json& json) {
 
 std::string words_of_stop(const Json& json) {
     const std::string reason = text_at(json, "reason");
-    return fmt::format(": {}{}{}", text_at(json, "cause"), reason == "none" ? "" : ": " + reason,
-                       pair_at(json, "pair"));
+    const Json& line = json.at("program_line");
+    return fmt::format(
+        ": {}{}{}{}", text_at(json, "cause"), reason == "none" ? "" : ": " + reason,
+        pair_at(json, "pair"),
+        line.is_null() ? "" : fmt::format(", program line {}", line.get<std::uint64_t>()));
 }
 
 double mm_at(const Json& json, const char* key) {
@@ -411,25 +297,48 @@ std::string words_of_guard(const Json& json) {
                        words_of_board_test(json.at("board_test")));
 }
 
-/// The way out of a stop that needs one of its own.
-std::string words_of_way_out(const Json& json) {
-    return json.at("reason") == to_text(StopReason::tool)
-               ? fmt::format("  the machine file does not have this tool: {}\n", kUnknownToolWay)
-               : std::string();
+/// What leads out of the stop; empty: nothing that the guard knows of.
+std::vector<std::string> ways_out_of(const Json& json) {
+    std::vector<std::string> out;
+    if (const Json& tool = json.at("unknown_tool"); !tool.is_null()) {
+        out.push_back(unknown_tool_sentence(tool.get<std::uint64_t>(), text_at(json, "file")));
+    }
+    if (const Json& way = json.at("way_out"); !way.is_null()) {
+        out.push_back(escaped(way.get<std::string>(), kWayOutMax));
+    }
+    return out;
 }
 
-std::string words_of_view(const Json& json) {
-    std::string out = words_of_why(json, "why", "pair") + words_of_way_out(json) +
-                      words_of_withheld(json) + words_of_why(json, "withheld_why", "withheld_pair");
+std::string words_of_tool(const Json& json) {
+    const Json &tool = json.at("tool"), &guarded = json.at("guarded_tool");
+    if (tool.is_null()) {
+        return {};
+    }
+    const std::string number = fmt::format(", tool {}", tool.get<std::uint64_t>());
+    if (tool == guarded) {
+        return number;
+    }
+    return guarded.is_null()
+               ? number + " (empty)"
+               : number + fmt::format(" (guarded as first_tool, {})", guarded.get<std::uint64_t>());
+}
+
+std::string words_of_view(const Json& json, const std::vector<std::string>& ways_out) {
+    std::string out = words_of_why(json, "why", "pair");
+    for (const std::string& sentence : ways_out) {
+        out += "  " + sentence + "\n";
+    }
+    out += words_of_withheld(json) + words_of_why(json, "withheld_why", "withheld_pair");
     if (count_at(json, "age_ms") > kHeldMs) {
         out += fmt::format("no update for {} ms: the bus thread of the guard is blocked\n",
                            count_at(json, "age_ms"));
     }
-    out += fmt::format("axes {}{}{}\n", is_at(json, "stands") ? "at rest" : "not at rest",
+    out += fmt::format("axes {}{}{}{}\n", is_at(json, "stands") ? "at rest" : "not at rest",
                        is_at(json, "confirmed") ? ", stop confirmed" : "",
                        json.at("session").is_null() ? ""
                        : is_at(json, "session")     ? ", board session received"
-                                                    : ", no board session");
+                                                    : ", no board session",
+                       words_of_tool(json));
     if (!json.at("period_us").is_null()) {
         out += fmt::format("period {:.3f} us, declared {} us\n", json.at("period_us").get<double>(),
                            count_at(json, "sample_us"));
@@ -455,41 +364,6 @@ StatusWords words_of_init(const Json& json) {
 
 }  // namespace
 
-StatusLine::StatusLine(const Machine& machine, std::string_view bus, std::string_view mode,
-                       std::string_view configuration_sha256, const FoundRecord& board_test)
-    : machine_(machine) {
-    const BoardTestRecord& record = board_test.record;
-    const auto text_or_null = [](const std::string& text) {
-        return text.empty() ? Json(nullptr) : Json(text);
-    };
-    const Json head{{"axguardd", AXG_VERSION},
-                    {"bus", bus},
-                    {"machine", machine.name.substr(0, 200)},
-                    {"configuration_sha256", configuration_sha256},
-                    {"mode", mode},
-                    {"board_test",
-                     {{"record", to_text(board_test.state)},
-                      {"serial", text_or_null(record.serial)},
-                      {"date", text_or_null(record.date)},
-                      {"differs", board_test.differs}}}};
-    head_ = head.dump(-1, ' ', true, Json::error_handler_t::replace);
-    head_.pop_back();  // what follows is in the same braces
-}
-
-std::size_t StatusLine::write(const LiveView* view, const GuardWhy& why, std::int64_t now_us,
-                              std::span<char> out) const noexcept {
-    Line line(out);
-    line.put("{}", head_);
-    if (view == nullptr) {
-        line.put(",\"phase\":\"init\"");
-    } else {
-        put_state(line, *view, why, machine_, now_us);
-        put_counters(line, *view);
-    }
-    line.put("}}\n");
-    return line.size();
-}
-
 std::optional<StatusWords> words_of_status(std::string_view line) {
     const Json json = Json::parse(line, nullptr, false);
     if (!json.is_object() || !has(json, kHeadKeys)) {
@@ -512,7 +386,8 @@ std::optional<StatusWords> words_of_status(std::string_view line) {
     out.text = fmt::format("{}: {}{}, for {:.1f} s\n", text_at(json, "bus"), to_text(*phase),
                            is_stopped ? words_of_stop(json) : "",
                            static_cast<double>(count_at(json, "phase_ms")) * 1e-3);
-    out.text += words_of_view(json) + words_of_guard(json);
+    out.ways_out = ways_out_of(json);
+    out.text += words_of_view(json, out.ways_out) + words_of_guard(json);
     out.json = json.dump(-1, ' ', true) + '\n';
     return out;
 }

@@ -278,7 +278,7 @@ std::string detail_of(const axg_guard& guard, axg::GuardFault cause) {
 }
 
 void explain(axg_guard& guard, std::int32_t program_line, axg_stop& out) {
-    axg::StopView view = guard.desk->view(*guard.guard);
+    axg::StopView view = guard.desk->view(axg::stop_in_force(*guard.guard));
     view.account.program_line = program_line;
     view.account.detail = detail_of(guard, view.account.cause);
     std::string words;

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stop in force as a person needs it, for axg_guard_explain: the pair's distances, an unknown
-// tool, and the ways out once the axes rest. The engine is the desk's own, so that a cycle may run
-// in another thread meanwhile.
+// The stop in force as a person needs it: the pair's distances, an unknown tool, and the ways out
+// once the axes rest. The engine is the desk's own, so that a cycle may run in another thread
+// meanwhile.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
+#include <mutex>
 #include <optional>
 #include <string>
 
@@ -19,6 +20,16 @@
 #include "firmware_if/setup/loaded_machine.hpp"
 
 namespace axg {
+
+/// State of a guard that a thread needs to explain its stop.
+struct StopInForce {
+    GuardFault cause = GuardFault::none;
+    StopReason reason = StopReason::none;
+    std::uint32_t pair = kNoIndex;
+    std::uint32_t query = 0;    // GuardNode::stop_query
+    bool is_confirmed = false;  // the axes rest since
+};
+[[nodiscard]] StopInForce stop_in_force(const GuardNode& live) noexcept;
 
 struct StopView {
     StopAccount account;
@@ -37,23 +48,31 @@ class StopDesk {
     /// The thread that processes, after each turn. No allocation.
     void set_stop(const GuardNode& live) noexcept { why_.set_stop(live.stop_query()); }
 
-    /// The thread that processes, in phase stopped. Cost: milliseconds and memory in the first call
-    /// of a stop, and in the first one after the axes came to rest.
-    [[nodiscard]] StopView view(const GuardNode& live);
+    /// Any thread may call it in phase stopped. Cost: milliseconds and memory in the first call of
+    /// a stop, in the first one at rest, and in each one that finds the axes elsewhere.
+    [[nodiscard]] StopView view(const StopInForce& stop);
+    /// Tool number of the newest sample; empty: there was none.
+    [[nodiscard]] std::optional<std::uint16_t> tool() const noexcept;
+    /// Any thread may call it: distances of a withheld permit. No allocation.
+    [[nodiscard]] std::optional<PairWhy> withheld(const WithheldPermit& withheld) noexcept;
 
   private:
     [[nodiscard]] WhyFacts facts_of(const PairWhy& why, std::uint32_t pair) const;
+    [[nodiscard]] const std::string& ways_out(const StopInForce& stop);
 
     const LoadedMachine& loaded_;
     const ContainmentTest& containment_test_;
     std::string file_;
     std::optional<CpuEngine> engine_;  // empty: memory ran out, and there are no distances
     WhyDesk why_;
+    std::atomic<std::int32_t> tool_{-1};          // of the newest sample; -1: none yet
     std::atomic<std::int32_t> unknown_tool_{-1};  // of the newest sample; -1: the file has its tool
     Newest<AxisSnapshot> newest_;
+    std::mutex reading_;  // no thread with a deadline takes it
     AxisSnapshot snapshot_;
     bool has_snapshot_ = false;
-    std::int64_t stop_us_ = -1;  // of the stop that `ways_out_` is for; -1: none
+    std::uint32_t left_query_ = 0;  // of the stop that `ways_out_` is for; 0: none
+    AxisSnapshot left_;             // where they lead out of
     std::string ways_out_;
 };
 

@@ -93,6 +93,10 @@ std::vector<std::string> why_sentences(const WhyFacts& facts) {
     return out;
 }
 
+std::string unknown_tool_sentence(std::uint64_t tool, std::string_view file) {
+    return fmt::format("tool {} is not in {}: {}", tool, file, kUnknownToolWay);
+}
+
 std::vector<std::string> stop_sentences(const StopAccount& account) {
     std::vector<std::string> out{stop_sentence(account)};
     if (account.why) {
@@ -100,8 +104,7 @@ std::vector<std::string> stop_sentences(const StopAccount& account) {
         out.insert(out.end(), sentences.begin(), sentences.end());
     }
     if (account.unknown_tool) {
-        out.push_back(fmt::format("tool {} is not in {}: {}", *account.unknown_tool, account.file,
-                                  kUnknownToolWay));
+        out.push_back(unknown_tool_sentence(*account.unknown_tool, account.file));
     }
     if (!account.ways_out.empty()) {
         out.push_back(account.ways_out);

@@ -45,6 +45,9 @@ struct WhyFacts {
 inline constexpr std::string_view kUnknownToolWay =
     "add it under tools; load another tool to go on";
 
+/// "tool 3 is not in m.yaml: ..."
+[[nodiscard]] std::string unknown_tool_sentence(std::uint64_t tool, std::string_view file);
+
 /// A stop in force, as its reader sees it.
 struct StopAccount {
     GuardFault cause = GuardFault::none;

@@ -170,14 +170,18 @@ class LivePage {
   /** Needed and available distance of each stop and each permit withheld, and the parts. */
   writeStateWhy({why: whys}) {
     const mm = (value) => `${value.toFixed(4)} mm`;
-    const rows = whys.flatMap(({of, pair, distances: why, words}) => {
+    const rows = whys.flatMap(({of, pair, distances: why, words, ways_out: ways}) => {
       const tool = why && why.tool !== null ? `, tool ${why.tool}` : "";
       const head = pair === null ? [] : [[of, `${pair}${tool}`, "strong"]];
-      if (!why) return [...head, [pair === null ? of : "distances", words, "old"]];
+      const leads = ways.map((way) => ["way out", way, "strong"]);
+      if (!why) {
+        const none = words ? [[pair === null ? of : "distances", words, "old"]] : [];
+        return [...head, ...none, ...leads];
+      }
       const isFar = why.available_mm >= why.within_mm;
       const open = why.open ? [["first part left open",
         `needs ${mm(why.open.needed_mm)} and has ${mm(why.open.available_mm)}`]] : [];
-      return [...head, ["needed", mm(why.needed_mm), "strong"],
+      return [...head, ...leads, ["needed", mm(why.needed_mm), "strong"],
         ["available", why.available_mm <= 0 ? "none"
           : `${isFar ? "at least " : ""}${mm(why.available_mm)}`, "strong"],
         ...WHY_PARTS.filter(([key]) => why[key] !== null).map(([key, label]) =>
@@ -211,7 +215,9 @@ class LivePage {
     const isOld = axes.age_ms > OLD_MS;
     const rows = this.data.machine.axes.map(({name, unit}, i) =>
       [name, `${axes.positions[i].toFixed(unit === "mm" ? 3 : 4)} ${unit}`, isOld ? "old" : ""]);
-    rows.push(["tool", String(axes.tool)], ["mode", axes.mode]);
+    const isGuarded = axes.tool === axes.guarded_tool;  // else tool 0 is guarded as first_tool
+    rows.push(["tool", isGuarded ? String(axes.tool)
+      : `${axes.tool} (guarded as first_tool, ${axes.guarded_tool})`], ["mode", axes.mode]);
     if (isOld) rows.push(["sample", `${seconds(axes.age_ms)} old`, "old"]);
     this.writeList("axes", rows);
   }

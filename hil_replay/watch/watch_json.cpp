@@ -88,6 +88,7 @@ Json axes_json(const WatchInput& input) {
     }
     return {{"positions", std::move(positions)},
             {"tool", bus.axes->tool},
+            {"guarded_tool", bus.axes->tool != 0 ? bus.axes->tool : input.machine.first_tool},
             {"mode", word_of_mode(bus.axes->mode)},
             {"age_ms", age_ms(bus.board_us, input.now_us)}};
 }
@@ -112,7 +113,8 @@ Json whys_json(const WatchInput& input) {
         out.push_back({{"of", why.of},
                        {"pair", why.pair.empty() ? Json() : Json(why.pair)},
                        {"distances", why.distances.empty() ? Json() : Json::parse(why.distances)},
-                       {"words", why.words}});
+                       {"words", why.words},
+                       {"ways_out", why.ways_out}});
     }
     return out;
 }
@@ -166,6 +168,9 @@ std::optional<GuardLine> read_guard_line(std::string_view line) {
     out.reason = json.at("reason").get<std::string>();
     out.pair = pair_at(json, "pair");
     out.why = json.at("why").dump();
+    out.ways_out = words->ways_out;
+    out.program_line =
+        json.at("program_line").is_null() ? 0 : json.at("program_line").get<std::uint64_t>();
     out.withheld_why = json.at("withheld_why").dump();
     out.withheld = json.at("withheld").get<std::string>();
     out.withheld_reason = json.at("withheld_reason").get<std::string>();

@@ -42,7 +42,9 @@ WatchHeadline headline_of_phase(const std::string& phase) {
 std::string words_of_stop(const GuardLine& line) {
     std::string out = "STOP: " + line.cause;
     out += line.reason == "none" ? "" : ": " + line.reason;
-    return out + (line.pair.empty() ? "" : ": " + line.pair);
+    out += line.pair.empty() ? "" : ": " + line.pair;
+    return line.program_line == 0 ? out
+                                  : fmt::format("{}, program line {}", out, line.program_line);
 }
 
 /// Empty: the frame has none.
@@ -130,6 +132,12 @@ std::vector<WatchWhy> whys_of(const WatchInput& input) {
         const GuardLine& line = *input.status;
         if (line.phase == "stopped") {
             add("stop", line.pair, line.why);
+            if (out.empty() && !line.ways_out.empty()) {
+                out.push_back({"stop", "", "", ""});
+            }
+            if (!out.empty()) {
+                out.back().ways_out = line.ways_out;
+            }
         }
         if (line.withheld == "not proven") {
             add("permit withheld", line.withheld_pair, line.withheld_why);

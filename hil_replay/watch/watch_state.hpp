@@ -25,7 +25,9 @@ struct GuardLine {
     std::string pair, withheld_pair;                              // "a - b"; empty: none
     std::string why, withheld_why;  // JSON, as the line has them; empty, "null": unknown
     std::string bus, machine, configuration, version, mode;
-    bool has_view = false;  // the keys of a guard whose bus thread turns
+    std::vector<std::string> ways_out;  // of a stop, as StatusWords has them
+    std::uint64_t program_line = 0;     // of the control, at the stop; 0: not reported
+    bool has_view = false;              // the keys of a guard whose bus thread turns
     bool stands = false, is_confirmed = false;
     std::uint64_t age_ms = 0, phase_ms = 0, permits = 0, samples = 0, late = 0, lost = 0;
 };
@@ -66,8 +68,9 @@ struct WatchWhy {
     std::string pair;       // empty: unknown
     std::string distances;  // JSON, as the line has it; empty: unknown
     std::string words;      // why there are no distances; empty: there are
+    std::vector<std::string> ways_out = {};
 };
-/// Empty without a stop or a withheld permit, or if the status line names no pair for it.
+/// Empty without a stop or a withheld permit, or if the status line names neither pair nor way out.
 [[nodiscard]] std::vector<WatchWhy> whys_of(const WatchInput& input);
 
 /// In ASCII, one line.

@@ -75,12 +75,14 @@ def line_of(configuration):
                 "send_faults", "samples_lost", "frames_dropped", "operator_acts",
                 "operator_refused", "operator_ignored")
     return {"axguardd": "0.1.0", "bus": "can0", "machine": "paper-trunnion",
-            "configuration_sha256": configuration, "mode": "stoppable",
+            "file": "paper-trunnion.yaml", "configuration_sha256": configuration,
+            "mode": "stoppable",
             "board_test": {"record": "none", "serial": None, "date": None, "differs": []},
             "sample_us": 4000, "period_us": None, "age_ms": 1,
             "phase": "ready", "phase_ms": 1200, "cause": "none", "reason": "none", "pair": None,
-            "why": None, "withheld": "nothing", "withheld_reason": "none", "withheld_pair": None,
-            "withheld_why": None, "stands": True,
+            "why": None, "program_line": None, "unknown_tool": None, "way_out": None,
+            "withheld": "nothing", "withheld_reason": "none", "withheld_pair": None,
+            "withheld_why": None, "tool": 1, "guarded_tool": 1, "stands": True,
             "confirmed": False, "session": True, "hashes": "required",
             **{name: 7 for name in counters}}
 
@@ -183,12 +185,14 @@ def check_why(browser, guard, picture):
     """Needed and available distance with their parts, hidden while nothing is withheld."""
     section = browser.find_element("id", "why_section")
     check(not section.is_displayed(), "a reason is shown while nothing is withheld")
-    guard.say(phase="stopped", cause="verdict", reason="predicted", pair=["cutter", "c"], why=WHY)
+    guard.say(phase="stopped", cause="verdict", reason="predicted", pair=["cutter", "c"], why=WHY,
+              way_out="jog Z+ (1 mm: clearance at least 7.5000 mm)")
     wait_for(browser, "document.getElementById('why').children.length > 6", "no reason of the stop")
     words = browser.find_element("id", "why").text
     for part in ("cutter - c, tool 1", "7.0130 mm", "6.5000 mm", "motion until braking", "braking",
                  "uncertainty of position", "uncertainty of speed", "margin to keep", "arithmetic",
-                 "needs 3.0000 mm and has 2.7500 mm"):
+                 "needs 3.0000 mm and has 2.7500 mm", "way out",
+                 "jog Z+ (1 mm: clearance at least 7.5000 mm)"):
         check(part in words, f"why: {part!r} is not in {words!r}")
     check("standstill" not in words and "null" not in words, f"why: {words!r}")
     if picture:
@@ -196,6 +200,7 @@ def check_why(browser, guard, picture):
         browser.save_screenshot(picture)
     check_sizes(browser)
     guard.say(phase="selftest", cause="none", reason="none", pair=None, why=None,
+              way_out=None,
               withheld="not proven", withheld_reason="predicted", withheld_pair=["cutter", "c"],
               withheld_why={**WHY, "available_mm": 50.0, "list_full": True})
     wait_for(browser, "document.getElementById('why').textContent.includes('permit withheld')",

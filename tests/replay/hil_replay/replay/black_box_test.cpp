@@ -12,10 +12,10 @@
 #include <memory>
 
 #include "config/machine/effective_text.hpp"
-#include "firmware_if/axguardd/black_box_dump.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/guard/guard_node.hpp"
 #include "firmware_if/guard/live_engine.hpp"
+#include "firmware_if/live/black_box_dump.hpp"
 #include "firmware_if/protocol/handshake.hpp"
 #include "tests/support/can_board.hpp"
 #include "tests/support/json_value.hpp"

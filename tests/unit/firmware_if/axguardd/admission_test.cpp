@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "firmware_if/axguardd/metrics.hpp"
+#include "firmware_if/live/metrics.hpp"
 
 namespace axg {
 namespace {

@@ -8,7 +8,9 @@
 #include <limits>
 #include <string>
 
+#include "firmware_if/axguardd/board_test_record.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/live/status_line.hpp"
 #include "tests/support/json_value.hpp"
 #include "tests/support/motion_machine.hpp"
 #include "tests/support/page_text.hpp"
@@ -32,7 +34,8 @@ class StatusLineTest : public testing::Test {
     }
     std::string text(const LiveView* shown) const {
         std::array<char, kStatusLineBytesMax> room{};
-        const StatusLine line(machine, "can0", "stoppable", std::string(64, 'a'), board_test);
+        const StatusLine line(machine, "m.yaml", "can0", "stoppable", std::string(64, 'a'),
+                              board_test);
         return {room.data(), line.write(shown, why, kNowUs, room)};
     }
     test::Json json() const { return test::Json::parse(text(&view)); }
@@ -66,8 +69,8 @@ class StatusLineTest : public testing::Test {
 
     Machine machine = motion_test_machine();
     LiveView view;
-    GuardWhy why;
-    FoundRecord board_test;
+    StatusWhy why;
+    TestedBoard board_test;
 };
 
 TEST_F(StatusLineTest, SaysWhatTheGuardIsAndWhere) {
@@ -112,12 +115,54 @@ TEST_F(StatusLineTest, OfAStopItNamesCauseReasonAndPair) {
 
 TEST_F(StatusLineTest, AnUnknownToolIsShownWithTheWayOut) {
     const std::string way =
-        "does not have this tool: add it under tools; load another tool to go "
-        "on\n";
+        "tool 3 is not in m.yaml: add it under tools; load another tool to go on";
     stop(GuardFault::verdict, StopReason::tool);
-    EXPECT_NE(words().text.find(way), std::string::npos) << words().text;
-    stop(GuardFault::verdict, StopReason::contact);
-    EXPECT_EQ(words().text.find(way), std::string::npos) << words().text;
+    why.stop.account.unknown_tool = std::uint16_t{3};
+    EXPECT_EQ(json()["unknown_tool"], 3);
+    EXPECT_NE(words().text.find("  " + way + "\n"), std::string::npos) << words().text;
+    EXPECT_EQ(words().ways_out, std::vector{way});
+    why.stop.account.unknown_tool.reset();  // another one is loaded
+    EXPECT_EQ(words().text.find("m.yaml"), std::string::npos) << words().text;
+    EXPECT_TRUE(words().ways_out.empty());
+}
+
+TEST_F(StatusLineTest, AStopHasTheProvenJogAndTheProgramLine) {
+    EXPECT_TRUE(json()["way_out"].is_null());
+    EXPECT_TRUE(json()["program_line"].is_null());
+    const std::string jog = "jog Z+ (1 mm: clearance at least 1.3000 mm) or X- or A+";
+    why.stop.account.ways_out = jog;
+    view.program_line = 12;
+    EXPECT_TRUE(json()["way_out"].is_null()) << "it is not stopped";
+    EXPECT_TRUE(json()["program_line"].is_null());
+    stop(GuardFault::verdict, StopReason::predicted);
+    EXPECT_EQ(json()["way_out"], jog);
+    EXPECT_EQ(json()["program_line"], 12);
+    EXPECT_EQ(json()["file"], "m.yaml");
+    EXPECT_EQ(words().text.rfind(
+                  "can0: stopped: verdict: predicted: cutter - plate, program line 12, for 12.0 s\n"
+                  "  " +
+                      jog + "\n",
+                  0),
+              0U)
+        << words().text;
+    EXPECT_EQ(words().ways_out, std::vector{jog});
+}
+
+// Number 0 is a spindle without a number of its own: what the guard checks there is shown.
+TEST_F(StatusLineTest, ToolZeroIsShownWithTheToolThatIsGuarded) {
+    EXPECT_TRUE(json()["tool"].is_null());
+    EXPECT_EQ(words().text.find(", tool"), std::string::npos);
+    why.tool = std::uint16_t{5};
+    EXPECT_EQ(json()["tool"], 5);
+    EXPECT_EQ(json()["guarded_tool"], 5);
+    EXPECT_NE(words().text.find("session received, tool 5\n"), std::string::npos);
+    why.tool = std::uint16_t{0};
+    machine.first_tool = 1;
+    EXPECT_EQ(json()["guarded_tool"], 1);
+    EXPECT_NE(words().text.find(", tool 0 (guarded as first_tool, 1)\n"), std::string::npos);
+    machine.first_tool = 0;
+    EXPECT_TRUE(json()["guarded_tool"].is_null());
+    EXPECT_NE(words().text.find(", tool 0 (empty)\n"), std::string::npos);
 }
 
 TEST_F(StatusLineTest, OfAWithheldPermitItNamesWhatIsNotProven) {
@@ -137,7 +182,7 @@ TEST_F(StatusLineTest, DistancesAreThereWhereTheyAreKnown) {
         ASSERT_TRUE(none.contains(key));
         EXPECT_TRUE(none[key].is_null()) << key;
     }
-    why.stop = a_why();
+    why.stop.why = a_why();
     EXPECT_TRUE(json()["why"].is_null()) << "it is not stopped";
     stop(GuardFault::verdict, StopReason::predicted);
     const auto has = json()["why"];
@@ -156,9 +201,9 @@ TEST_F(StatusLineTest, DistancesAreThereWhereTheyAreKnown) {
     EXPECT_EQ(has["tool"], machine.tools[0].number);
     EXPECT_EQ(has["open"], test::Json::object({{"needed_mm", 3.0}, {"available_mm", 2.75}}));
     EXPECT_TRUE(json()["withheld_why"].is_null());
-    why.stop->is_whole = why.stop->is_jog = true;
-    why.stop->tool = kNoIndex;
-    why.stop->distances.open.reset();
+    why.stop.why->is_whole = why.stop.why->is_jog = true;
+    why.stop.why->tool = kNoIndex;
+    why.stop.why->distances.open.reset();
     const auto whole = json()["why"];
     EXPECT_EQ(whole["to_standstill_mm"], 1.25);
     for (const char* const key : {"until_braking_mm", "braking_mm", "position_error_mm",
@@ -171,7 +216,7 @@ TEST_F(StatusLineTest, DistancesAreThereWhereTheyAreKnown) {
 TEST_F(StatusLineTest, DistancesInWordsAreThoseOfAReplay) {
     stop(GuardFault::verdict, StopReason::predicted);
     EXPECT_EQ(words().text.find("needs"), std::string::npos) << "not known";
-    why.stop = a_why();
+    why.stop.why = a_why();
     EXPECT_NE(words().text.find(
                   "  cutter and plate could not be proven clear\n"
                   "  they are at least 6.5000 mm apart, the proof of a stop needs up to 7.0130 mm\n"
@@ -181,17 +226,17 @@ TEST_F(StatusLineTest, DistancesInWordsAreThoseOfAReplay) {
                   "    the first part left open needs 3.0000 mm and has 2.7500 mm\n"),
               std::string::npos)
         << words().text;
-    why.stop->distances.available_mm = 50;
+    why.stop.why->distances.available_mm = 50;
     EXPECT_NE(words().text.find("has at least 50.0000 mm"), std::string::npos);
     EXPECT_EQ(words().text.find("was full"), std::string::npos);
-    why.stop->is_list_full = true;
+    why.stop.why->is_list_full = true;
     EXPECT_NE(words().text.find("    a list of the engine was full (cycle: in the machine file)\n"),
               std::string::npos);
     EXPECT_NE(words().text.find("\n  cutter and plate could not be proven clear within the time of "
                                 "a cycle\n"),
               std::string::npos);
     EXPECT_EQ(json()["why"]["list_full"], true);
-    why.stop->distances.available_mm = 0;
+    why.stop.why->distances.available_mm = 0;
     EXPECT_NE(words().text.find("and has none"), std::string::npos);
     view.phase = GuardPhase::selftest;
     view.withheld = {WithheldPermit::Why::not_proven, StopReason::predicted, 0};
@@ -232,8 +277,11 @@ TEST_F(StatusLineTest, TheLongestLineFits) {
     stop(GuardFault::second_guard, StopReason::left_limits);
     view.withheld = {WithheldPermit::Why::not_proven, StopReason::left_limits, 0};
     view.time_us = std::numeric_limits<std::int64_t>::min() / 2;
-    why.stop = why.withheld = a_why();
-    for (std::optional<PairWhy>* const most : {&why.stop, &why.withheld}) {
+    why.stop.why = why.withheld = a_why();
+    why.stop.account.unknown_tool = std::uint16_t{65535};
+    why.stop.account.ways_out = std::string(450, 'j');
+    view.program_line = std::numeric_limits<std::int32_t>::max();
+    for (std::optional<PairWhy>* const most : {&why.stop.why, &why.withheld}) {
         (*most)->distances.need = {1e12, 1e12, 1e12, 1e12, 1e12, 1e12};
         (*most)->distances.available_mm = (*most)->distances.within_mm = kMarginMmMax;
         (*most)->distances.open = OpenPart{1e12, kMarginMmMax};
@@ -274,10 +322,10 @@ TEST_F(StatusLineTest, SaysWhetherTheBoardWasTestedForThisConfiguration) {
     EXPECT_EQ(json()["board_test"]["record"], "none");
     EXPECT_TRUE(json()["board_test"]["serial"].is_null());
     EXPECT_NE(words().text.find("board test: no record\n"), std::string::npos) << words().text;
-    board_test.record.serial = std::string(kSerialCharactersMax, '"');
-    board_test.record.date = "2026-11-30T01:02:03Z";
+    board_test.serial = std::string(kSerialCharactersMax, '"');
+    board_test.date = "2026-11-30T01:02:03Z";
     board_test.state = RecordState::this_configuration;
-    EXPECT_EQ(json()["board_test"]["serial"], board_test.record.serial);
+    EXPECT_EQ(json()["board_test"]["serial"], board_test.serial);
     EXPECT_NE(words().text.find("record for this configuration: serial \"\""), std::string::npos)
         << words().text;
     board_test.state = RecordState::another;
@@ -349,7 +397,7 @@ TEST_F(StatusLineTest, AKeyThatIsMissingOrOfAnotherTypeIsNoStatus) {
         EXPECT_FALSE(words_of_status(odd.dump())) << key << ' ' << value;
     }
     stop(GuardFault::verdict, StopReason::predicted);
-    why.stop = a_why();
+    why.stop.why = a_why();
     const test::Json with_why = json();
     ASSERT_TRUE(words_of_status(with_why.dump()));
     for (const auto& [key, value] : with_why["why"].items()) {
@@ -378,8 +426,9 @@ TEST_F(StatusLineTest, NoCharacterOfItSteersATerminal) {
     stop(GuardFault::verdict, StopReason::contact);
     test::Json odd = json();
     const std::string steering = "\x1b]0;x\x07\x7f\xc2\x9b[J\xe2\x80\xae";
-    for (const char* const key : {"axguardd", "bus", "machine", "mode", "configuration_sha256",
-                                  "reason", "withheld", "withheld_reason"}) {
+    for (const char* const key :
+         {"axguardd", "bus", "machine", "file", "mode", "configuration_sha256", "reason",
+          "withheld", "withheld_reason"}) {
         odd.set(key, steering);
     }
     odd.set("pair", test::Json::array({steering, steering}));

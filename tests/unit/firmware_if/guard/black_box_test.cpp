@@ -10,7 +10,7 @@
 #include <fstream>
 #include <string>
 
-#include "firmware_if/axguardd/black_box_dump.hpp"
+#include "firmware_if/live/black_box_dump.hpp"
 #include "hil_replay/replay/black_box_file.hpp"
 #include "tests/support/live_world.hpp"
 

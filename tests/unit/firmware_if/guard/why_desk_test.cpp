@@ -7,7 +7,7 @@
 
 #include <array>
 
-#include "firmware_if/axguardd/status_json.hpp"
+#include "firmware_if/live/status_line.hpp"
 #include "hil_replay/replay/why_stop.hpp"
 #include "tests/support/descending_chain.hpp"
 #include "tests/support/json_value.hpp"
@@ -18,9 +18,10 @@ namespace {
 using test::DescendingChain;
 
 test::Json line_of(const Machine& machine, const GuardWhy& why, const LiveView& view) {
-    const StatusLine line(machine, "can0", "stoppable", "0");
+    const StatusLine line(machine, "m.yaml", "can0", "stoppable", "0");
     std::array<char, kStatusLineBytesMax> text{};
-    const std::size_t size = line.write(&view, why, view.time_us, text);
+    const std::size_t size =
+        line.write(&view, {{{}, why.stop}, why.withheld, {}}, view.time_us, text);
     return test::Json::parse(std::string(text.data(), size));
 }
 

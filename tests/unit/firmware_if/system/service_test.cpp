@@ -12,7 +12,8 @@
 #include <regex>
 #include <set>
 
-#include "firmware_if/axguardd/metrics.hpp"
+#include "firmware_if/axguardd/admission.hpp"
+#include "firmware_if/live/metrics.hpp"
 #include "firmware_if/system/service_notify.hpp"
 #include "tests/support/replay_fixture.hpp"
 

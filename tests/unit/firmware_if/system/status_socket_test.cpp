@@ -26,12 +26,15 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string line_of(const std::string& phase, const std::string& cause) {
-    return "{\"axguardd\":\"9\",\"bus\":\"can0\",\"machine\":\"m\",\"configuration_sha256\":\"a\","
+    return "{\"axguardd\":\"9\",\"bus\":\"can0\",\"machine\":\"m\",\"file\":\"m.yaml\","
+           "\"configuration_sha256\":\"a\","
            "\"mode\":\"contact\",\"board_test\":{\"record\":\"none\",\"serial\":null,"
            "\"date\":null,\"differs\":[]},\"age_ms\":3,\"phase\":\"" +
            phase + "\",\"phase_ms\":40,\"cause\":\"" + cause +
-           "\",\"reason\":\"none\",\"pair\":null,\"why\":null,\"withheld\":\"nothing\","
-           "\"withheld_reason\":\"none\",\"withheld_pair\":null,\"withheld_why\":null,\"stands\":"
+           "\",\"reason\":\"none\",\"pair\":null,\"why\":null,\"program_line\":null,"
+           "\"unknown_tool\":null,\"way_out\":null,\"withheld\":\"nothing\","
+           "\"withheld_reason\":\"none\",\"withheld_pair\":null,\"withheld_why\":null,\"tool\":"
+           "null,\"guarded_tool\":null,\"stands\":"
            "true,"
            "\"confirmed\":false,\"session\":true,\"sample_us\":1000,\"period_us\":null,\"hashes\":"
            "\"required\",\"snapshots\":5,"

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "firmware_if/axguardd/status_json.hpp"
+#include "firmware_if/live/status_line.hpp"
 #include "tests/support/json_value.hpp"
 #include "tests/support/watched_frames.hpp"
 
@@ -17,7 +17,7 @@ class WatchState : public testing::Test {
   protected:
     /// As the guard writes it.
     [[nodiscard]] GuardLine line_of(const LiveView& live, const std::string& hash = kHash) const {
-        const StatusLine status(machine, "can0", "stoppable", hash);
+        const StatusLine status(machine, "m.yaml", "can0", "stoppable", hash);
         std::array<char, kStatusLineBytesMax> text{};
         const std::size_t size = status.write(&live, why, live.time_us, text);
         const auto line = read_guard_line({text.data(), size});
@@ -48,7 +48,7 @@ class WatchState : public testing::Test {
     }
 
     Machine machine = test::watched_machine();
-    GuardWhy why;
+    StatusWhy why;
     BusView view{machine, {}};
     WatchInput input{.machine = machine, .configuration = kHash};
 };
@@ -110,10 +110,10 @@ TEST_F(WatchState, DistancesOfAStopAndOfAWithheldPermitArePassedOn) {
     live.cause = GuardFault::verdict;
     live.reason = StopReason::predicted;
     live.pair = 0;
-    why.stop = PairWhy{};
-    why.stop->distances.need = {.margin_mm = 2, .braking_mm = 3.5};
-    why.stop->distances.within_mm = 50;
-    why.stop->distances.available_mm = 4.25;
+    why.stop.why = PairWhy{};
+    why.stop.why->distances.need = {.margin_mm = 2, .braking_mm = 3.5};
+    why.stop.why->distances.within_mm = 50;
+    why.stop.why->distances.available_mm = 4.25;
     set_line(live);
     said = json()["why"];
     ASSERT_EQ(said.size(), 2U);
@@ -124,6 +124,30 @@ TEST_F(WatchState, DistancesOfAStopAndOfAWithheldPermitArePassedOn) {
     EXPECT_EQ(said[0]["distances"]["braking_mm"], 3.5);
     EXPECT_EQ(said[0]["words"], "");
     EXPECT_EQ(said[1]["of"], "permit withheld");
+}
+
+TEST_F(WatchState, AStopHasItsWayOutAndItsProgramLine) {
+    LiveView live;
+    live.phase = GuardPhase::stopped;
+    live.cause = GuardFault::verdict;
+    live.reason = StopReason::predicted;
+    live.pair = 0;
+    live.program_line = 7;
+    set_line(live);
+    EXPECT_TRUE(json()["why"][0]["ways_out"].empty()) << "none is known";
+    why.stop.account.ways_out = "jog Z+ (1 mm: clearance at least 1.3000 mm) or X-";
+    set_line(live);
+    EXPECT_EQ(json()["why"][0]["ways_out"][0], why.stop.account.ways_out);
+    EXPECT_EQ(headline_of(input).text, "STOP: verdict: predicted: cutter - plate, program line 7");
+    live.reason = StopReason::tool;
+    live.pair = kNoIndex;
+    why.stop.account = {};
+    why.stop.account.unknown_tool = std::uint16_t{3};
+    set_line(live);
+    const auto said = json()["why"];
+    ASSERT_EQ(said.size(), 1U);
+    EXPECT_EQ(said[0]["ways_out"][0],
+              "tool 3 is not in m.yaml: add it under tools; load another tool to go on");
 }
 
 TEST_F(WatchState, AnotherMachineFileIsSaid) {
@@ -196,10 +220,11 @@ TEST_F(WatchState, ALineOfAnotherVersionOrOfGarbageIsNone) {
     EXPECT_FALSE(read_guard_line("{}"));
     EXPECT_FALSE(read_guard_line(std::string(5000, '{')));
     EXPECT_FALSE(read_guard_line("{\"axguardd\":\"9\",\"phase\":\"armed\"}"));
-    const auto init = read_guard_line(
-        R"({"axguardd":"0","bus":"can0","machine":"m","configuration_sha256":"","mode":"x",)"
-        R"("board_test":{"record":"none","serial":null,"date":null,"differs":[]},)"
-        R"("phase":"init"})");
+    const auto init =
+        read_guard_line(R"({"axguardd":"0","bus":"can0","machine":"m","file":"m.yaml",)"
+                        R"("configuration_sha256":"","mode":"x",)"
+                        R"("board_test":{"record":"none","serial":null,"date":null,"differs":[]},)"
+                        R"("phase":"init"})");
     ASSERT_TRUE(init);
     input.status = init;
     input.status_us = 0;

@@ -4,46 +4,18 @@
 // construction.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
-#include <type_traits>
+#include <utility>
 
-#include "core/guard/guard_state.hpp"
-#include "firmware_if/axguardd/admission.hpp"
-#include "firmware_if/guard/guard_node.hpp"
-#include "firmware_if/receiver/axis_receiver.hpp"
+#include "firmware_if/live/live_view.hpp"
 
 namespace axg {
 
 inline constexpr std::int64_t kMetricsPeriodUs = 1'000'000;
-
-/// Verdict of the admission at the start, one bit a check in the order of kAdmissionChecks.
-struct AdmissionGauge {
-    bool is_fit = false;
-    double margin = 0;
-    std::uint32_t failed = 0;  // those that a person waived: there is no guard otherwise
-};
-[[nodiscard]] AdmissionGauge gauge_of(const AdmissionVerdict& verdict) noexcept;
-
-/// The bus thread's copy of its state for other threads.
-struct LiveView {
-    GuardPhase phase = GuardPhase::stopped;
-    GuardFault cause = GuardFault::none;
-    LiveCounters counters;
-    ReceiverCounters input;
-    std::uint64_t frames_dropped = 0;
-    std::int64_t time_us = 0, phase_us = 0;  // of this view; when the phase began
-    StopReason reason = StopReason::none;    // of the newest stop, and its pair
-    std::uint32_t pair = kNoIndex;
-    std::uint32_t stop_query = 0;  // GuardNode::stop_query
-    WithheldPermit withheld;
-    bool stands = false, is_confirmed = false, has_session = false;
-    AdmissionGauge admission;  // at the start
-    bool compares_hashes = true;
-};
-static_assert(std::is_trivially_copyable_v<LiveView>);
 
 /// @param bus  names the guard in every line
 /// @return     how much was written; 0: `out` was too small
@@ -63,6 +35,26 @@ class ReplacedFile {
 
   private:
     std::string path_, part_;
+};
+
+/// Replaces the metrics file by the metrics of about now.
+class MetricsWriter {
+  public:
+    /// @param file  empty: none is written
+    MetricsWriter(std::string bus, const std::string& file) : bus_(std::move(bus)), file_(file) {}
+    ~MetricsWriter() { file_.remove(); }  // those of a guard that has ended would mislead
+    MetricsWriter(const MetricsWriter&) = delete;
+    MetricsWriter& operator=(const MetricsWriter&) = delete;
+
+    /// Some times a second. No allocation.
+    void work(ViewExchange& exchange, std::int64_t now_us) noexcept;
+
+  private:
+    std::string bus_;
+    ReplacedFile file_;
+    std::int64_t due_us_ = 0;
+    bool has_failed_ = false;
+    std::array<char, 16384> text_{};
 };
 
 }  // namespace axg

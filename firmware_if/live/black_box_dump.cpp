@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware_if/axguardd/black_box_dump.hpp"
+#include "firmware_if/live/black_box_dump.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -13,6 +13,9 @@
 #include <filesystem>
 #include <system_error>
 #include <vector>
+
+#include "config/machine/effective_text.hpp"
+#include "core/machine/cycle_plan.hpp"
 
 namespace axg {
 namespace {
@@ -82,6 +85,18 @@ void remove_oldest(const BlackBoxFolder& folder) {
 
 }  // namespace
 
+BlackBoxHeader black_box_header(const LoadedMachine& loaded, bool is_stoppable,
+                                bool accepts_local) {
+    BlackBoxHeader header;
+    const std::string hash = configuration_hash(loaded.machine, loaded.meshes);
+    std::copy_n(hash.begin(), std::min(hash.size(), header.configuration.size()),
+                header.configuration.begin());
+    header.is_stoppable = is_stoppable;
+    header.accepts_local = accepts_local;
+    header.plan = cycle_plan(loaded.machine, stop_tasks(loaded.machine));
+    return header;
+}
+
 std::string write_black_box(const BlackBox& black_box, const BlackBoxHeader& header,
                             const BlackBoxFolder& folder, std::string& fault) {
     std::string path = folder.folder + "/" + name_of(folder, header.unix_us);
@@ -123,7 +138,7 @@ void BlackBoxDump::finish(std::int64_t now_us) {
     std::string fault;
     const std::string path = write_black_box(black_box_, header_, folder_, fault);
     path_ = path.empty() ? path_ : path;
-    std::fprintf(stderr, "axguardd: %s%s\n",
+    std::fprintf(stderr, "%s: %s%s\n", program_invocation_short_name,
                  path.empty() ? fault.c_str() : "black box: ", path.c_str());
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "firmware_if/guard/black_box.hpp"
+#include "firmware_if/setup/loaded_machine.hpp"
 
 namespace axg {
 
@@ -15,6 +16,10 @@ struct BlackBoxFolder {
     std::string folder, bus;
     std::uint32_t dumps_max = 8;  // the oldest are removed; 0: none is written
 };
+
+/// The header of a dump of this run, without its times.
+[[nodiscard]] BlackBoxHeader black_box_header(const LoadedMachine& loaded, bool is_stoppable,
+                                              bool accepts_local);
 
 /// The records of `box`, to DIR/BUS-YYYYMMDDTHHMMSSZ.axgbox. Empty: the reason is in `fault`.
 [[nodiscard]] std::string write_black_box(const BlackBox& black_box, const BlackBoxHeader& header,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware_if/axguardd/metrics.hpp"
+#include "firmware_if/live/metrics.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -7,7 +7,9 @@
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 
 namespace axg {
 namespace {
@@ -78,21 +80,13 @@ void put_admission(Page& page, const AdmissionGauge& admission, std::string_view
               "Smallest unused share of all time limits of the admission.");
     page.put("axguard_admission_margin_ratio{{bus=\"{}\"}} {:.3f}\n", bus, admission.margin);
     page.head("admission_waived", "gauge", "1 for a check that failed and was waived by name.");
-    for (std::size_t i = 0; i < kAdmissionCount; ++i) {
+    for (std::size_t i = 0; i < kAdmissionNames.size(); ++i) {
         page.put("axguard_admission_waived{{bus=\"{}\",check=\"{}\"}} {}\n", bus,
-                 to_text(kAdmissionChecks[i]), admission.failed >> i & 1U);
+                 kAdmissionNames[i], admission.failed >> i & 1U);
     }
 }
 
 }  // namespace
-
-AdmissionGauge gauge_of(const AdmissionVerdict& verdict) noexcept {
-    AdmissionGauge gauge{verdict.is_fit(), verdict.margin, 0};
-    for (std::size_t i = 0; i < verdict.lines.size(); ++i) {
-        gauge.failed |= verdict.lines[i].is_passed ? 0U : 1U << i;
-    }
-    return gauge;
-}
 
 std::size_t write_metrics(const LiveView& view, std::string_view bus,
                           std::span<char> out) noexcept {
@@ -105,7 +99,9 @@ std::size_t write_metrics(const LiveView& view, std::string_view bus,
     }
     page.head("stop_cause_info", "gauge", "1 for the cause of the stop; absent without a stop.");
     page.put("axguard_stop_cause_info{{bus=\"{}\",cause=\"{}\"}} 1\n", bus, to_text(view.cause));
-    put_admission(page, view.admission, bus);
+    if (view.admission) {
+        put_admission(page, *view.admission, bus);
+    }
     page.head("hashes_compared", "gauge", "1 if the board has to send the hashes of the machine.");
     page.put("axguard_hashes_compared{{bus=\"{}\"}} {}\n", bus, view.compares_hashes ? 1 : 0);
     put_counters(page, view, bus);
@@ -147,6 +143,23 @@ bool ReplacedFile::replace(std::span<const char> text) const noexcept {
 void ReplacedFile::remove() const noexcept {
     if (is_wanted() && !is_something_else(path_)) {
         unlink(path_.c_str());
+    }
+}
+
+void MetricsWriter::work(ViewExchange& exchange, std::int64_t now_us) noexcept {
+    LiveView view;
+    while (exchange.views.pop(view)) {
+        const std::size_t size = write_metrics(view, bus_, text_);
+        if (!file_.replace({text_.data(), size}) && !has_failed_) {
+            has_failed_ = true;
+            std::fprintf(stderr,
+                         "%s: metrics: %s: %s. Pass a file in a writable folder with --metrics.\n",
+                         program_invocation_short_name, file_.path().c_str(), std::strerror(errno));
+        }
+    }
+    if (file_.is_wanted() && now_us >= due_us_) {
+        due_us_ = now_us + kMetricsPeriodUs;
+        exchange.is_wanted.store(true);
     }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The status thread between readers of every kind and a thread that plays the bus thread: what the
 // latter pays for them, and that each reader is served whatever the others do.
-#include "firmware_if/axguardd/status_server.hpp"
+#include "firmware_if/live/status_server.hpp"
 
 #include <gtest/gtest.h>
 #include <poll.h>
@@ -39,8 +39,8 @@ class StatusServer : public testing::Test {
         EXPECT_EQ(fault, "");
         EXPECT_TRUE(socket.listen());
         bus_thread = std::thread([this] { play_bus(); });
-        status_thread =
-            std::thread([this] { serve_status(socket, line, exchange, nullptr, is_ending); });
+        status_thread = std::thread(
+            [this] { serve_status({.socket = &socket, .line = &line}, exchange, is_ending); });
     }
     ~StatusServer() override {
         is_ending.store(true);
@@ -80,9 +80,9 @@ class StatusServer : public testing::Test {
     test::Workshop shop;
     std::string path = shop.file("can0.status");
     Machine machine = motion_test_machine();
-    StatusLine line{machine, "can0", "contact", "0"};
+    StatusLine line{machine, "m.yaml", "can0", "contact", "0"};
     StatusSocket socket;
-    StatusExchange exchange;
+    ViewExchange exchange;
     std::atomic<bool> is_ending{false}, is_held{false};
     std::atomic<int> views{0};
     std::thread bus_thread, status_thread;
@@ -136,6 +136,45 @@ TEST_F(StatusServer, OfABusThreadThatIsHeldTheAgeIsSaid) {
         const auto age_ms = status()["age_ms"].get<std::int64_t>();
         return age_ms <= (monotonic_us() - released_us) / 1000 + 1;
     })) << "a view of then is not taken for one of now";
+}
+
+/// What a log prints of it.
+std::string logged(StopLog& log, const LiveView& view, const StopAccount& account) {
+    testing::internal::CaptureStderr();
+    log.note(view, account);
+    return testing::internal::GetCapturedStderr();
+}
+
+// A person reads it once at the stop, once more at rest, and not at each look of the thread.
+TEST(StopLogTest, EachSentenceIsLoggedOnceAndTheWayOutAtRest) {
+    StopLog log;
+    LiveView view;
+    view.phase = GuardPhase::stopped;
+    view.cause = GuardFault::verdict;
+    view.phase_us = 5'000'000;
+    view.time_us = 5'020'001;
+    StopAccount account;
+    account.cause = GuardFault::verdict;
+    account.reason = StopReason::predicted;
+    account.a = "cutter";
+    account.b = "plate";
+    account.why = WhyFacts{.a = "cutter", .b = "plate", .available_mm = 6.5, .needed_mm = 7};
+    const std::string why =
+        "5.020001   cutter and plate could not be proven clear\n"
+        "5.020001   they are at least 6.5000 mm apart, the proof of a stop needs up to 7.0000 mm\n";
+    EXPECT_EQ(logged(log, view, account), why) << "the phase's own line has the cause";
+    EXPECT_EQ(logged(log, view, account), "");
+    view.is_confirmed = true;
+    account.ways_out = "jog Z+";
+    EXPECT_EQ(logged(log, view, account), "5.020001   jog Z+\n");
+    EXPECT_EQ(logged(log, view, account), "");
+    view.phase = GuardPhase::init;  // the reset
+    EXPECT_EQ(logged(log, view, {}), "");
+    view.phase = GuardPhase::stopped;
+    view.is_confirmed = false;
+    view.phase_us = 6'000'000;
+    account.ways_out.clear();
+    EXPECT_EQ(logged(log, view, account), why) << "of the next stop";
 }
 
 }  // namespace
