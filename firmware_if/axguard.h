@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // C interface of the guard, for use in another process: frames in, frames out, time in. The calling
 // process provides threads, clock and socket. Lengths in mm, times in us of one monotonic clock. No
-// exception crosses this interface. Only axg_guard_destroy and axg_guard_explain touch the heap
-// after axg_guard_start. Example: c_interface/example/guard_a_trace.c. Reference:
-// docs/reference/c-interface.md.
+// exception crosses this interface. Only axg_guard_destroy, axg_guard_explain, and the threads of
+// axg_guard_show touch the heap after axg_guard_start. Example:
+// c_interface/example/guard_a_trace.c. Reference: docs/reference/c-interface.md.
 #ifndef AXG_AXGUARD_H
 #define AXG_AXGUARD_H
 
@@ -201,6 +201,16 @@ typedef struct axg_terms {
     axg_axis axes[AXG_AXES_MAX];
 } axg_terms;
 
+// What people see of a guard, as of axguardd; null or 0: not.
+typedef struct axg_show_options {
+    const char* name;           // in the place of axguardd's bus: 1 to 32 letters, digits, - or _
+    const char* status_socket;  // read by axguardd status --socket and axguard watch --socket
+    const char* metrics_file;   // of the Prometheus node exporter, replaced once a second
+    const char* state_dir;      // folder of the dumps of the black box
+    uint32_t black_boxes;       // number of dumps to keep, one for each stop of an armed guard. A
+                                // process far ahead of real time loses records, which stops it
+} axg_show_options;
+
 typedef struct axg_guard axg_guard;
 
 // Reads machine file and meshes, creates the engine, and reserves all memory. Needs seconds with a
@@ -208,6 +218,12 @@ typedef struct axg_guard axg_guard;
 // AXG_STATUS_OK the caller destroys *out with axg_guard_destroy; otherwise *out is null.
 AXG_API axg_status axg_guard_create(const axg_options* options, axg_guard** out, char* text,
                                     size_t text_bytes);
+
+// Shows the guard until axg_guard_destroy, by two threads of the library, which take no signal and
+// for which no call waits, but axg_guard_explain. Call it once, before axg_guard_start. On
+// AXG_STATUS_BAD_CALL `text` has the fault, unless a pointer or the order was wrong.
+AXG_API axg_status axg_guard_show(axg_guard* guard, const axg_show_options* options, char* text,
+                                  size_t text_bytes);
 
 // Call once. The guard allocates no memory afterwards, but in axg_guard_explain.
 AXG_API axg_status axg_guard_start(axg_guard* guard, int64_t now_us);

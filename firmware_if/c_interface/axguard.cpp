@@ -3,68 +3,28 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <memory>
 #include <new>
-#include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "config/machine/effective_text.hpp"
 #include "firmware_if/c_interface/board_terms.hpp"
-#include "firmware_if/c_interface/sample_frames.hpp"
-#include "firmware_if/explain/stop_desk.hpp"
+#include "firmware_if/c_interface/guard_object.hpp"
+#include "firmware_if/c_interface/live_view_of.hpp"
 #include "firmware_if/explain/why_sentences.hpp"
-#include "firmware_if/guard/guard_node.hpp"
-#include "firmware_if/guard/host_wire.hpp"
 #include "firmware_if/guard/live_engine.hpp"
 #include "firmware_if/guard/live_refusal.hpp"
-#include "firmware_if/setup/choose_engine.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
-#include "firmware_if/setup/guard_parts.hpp"
-#include "firmware_if/setup/loaded_machine.hpp"
 
 static_assert(AXG_SAMPLE_FRAMES_MAX >= axg::kFramesPerSnapshotMax);
 static_assert(sizeof(axg_latch) == sizeof(axg::LatchCell) &&
               offsetof(axg_latch, inverse) == offsetof(axg::LatchCell, inverse));
 static_assert(AXG_AXES_MAX == axg::kAxesMax && AXG_HASH_PARTS == axg::kHashParts);
-
-/// Members in the order in which they are made: each needs those above it.
-struct axg_guard {
-    axg_guard(axg::LoadedMachine&& machine, const axg_options& wanted);
-    /// Whether there was memory for everything that the machine and the options require.
-    [[nodiscard]] bool has_all() const noexcept { return parts.fault().empty(); }
-
-    axg::LoadedMachine loaded;
-    std::vector<std::string> pairs;  // names
-    axg::GuardParts parts;
-    std::string words;  // the fault, if a part is missing
-    std::optional<axg::ChosenEngine> chosen;
-    std::optional<axg::GuardChain> chain;
-    std::optional<axg::StopDesk> desk;
-    axg::LatchCell forgotten{};  // in the place of a latch that outlives the guard
-    axg::LatchCell* latch = &forgotten;
-    axg::LiveOptions options;
-    // The last of each kind of note.
-    axg::ReceiverFault input_fault = axg::ReceiverFault::none;
-    std::uint32_t input_frame = 0;
-    const char* refused = "";
-    const char* bus_fault = "";
-    std::atomic<bool> has_query{false};
-    axg::SampleFrames samples;
-    std::uint32_t version;  // of the header that the host was compiled with
-    axg::LiveResult last;   // the newest of a sample
-    std::uint64_t evaluated = 0;
-    axg::HostWire wire;
-    axg::LiveQueues queues;
-    axg::SpscQueue<axg::LiveResult, 64> undated;  // not dated yet
-    std::optional<axg::GuardNode> guard;          // from the start on
-};
 
 namespace {
 
@@ -169,6 +129,9 @@ axg_frame to_c(const axg::CanFrame& frame) noexcept {
 void take_notes(axg_guard& guard) noexcept {
     LiveNote note;
     while (guard.queues.notes.pop(note)) {
+        if (guard.service) {
+            guard.service->note(note);
+        }
         switch (note.kind) {
             case LiveNote::Kind::input:
                 guard.input_fault = note.fault;
@@ -279,7 +242,7 @@ std::string detail_of(const axg_guard& guard, axg::GuardFault cause) {
 
 void explain(axg_guard& guard, std::int32_t program_line, axg_stop& out) {
     axg::StopView view = guard.desk->view(axg::stop_in_force(*guard.guard));
-    view.account.program_line = program_line;
+    view.account.program_line = guard.program_line = program_line;
     view.account.detail = detail_of(guard, view.account.cause);
     std::string words;
     for (const std::string& sentence : axg::stop_sentences(view.account)) {
@@ -299,6 +262,8 @@ void explain(axg_guard& guard, std::int32_t program_line, axg_stop& out) {
 axg_guard::axg_guard(axg::LoadedMachine&& machine, const axg_options& wanted)
     : loaded(std::move(machine)),
       parts(loaded, wanted.mode == AXG_MODE_STOPPABLE),
+      is_stoppable(wanted.mode == AXG_MODE_STOPPABLE),
+      file(std::filesystem::path(wanted.machine_file).filename().string()),
       samples(loaded.machine),
       version(wanted.version) {
     if (!has_all()) {
@@ -316,8 +281,7 @@ axg_guard::axg_guard(axg::LoadedMachine&& machine, const axg_options& wanted)
     }
     chain.emplace(loaded.machine, chosen->engine(*parts.engine), *parts.containment_test,
                   parts.cycle.chain());
-    desk.emplace(loaded, *parts.engine, *parts.containment_test,
-                 std::filesystem::path(wanted.machine_file).filename().string());
+    desk.emplace(loaded, *parts.engine, *parts.containment_test, file);
     options.accepts_local = wanted.takes_local != 0;
     options.hashes = axg::configuration_hashes(loaded.machine, loaded.meshes);
     axg::set_latch(forgotten, false);
@@ -438,6 +402,9 @@ axg_status axg_guard_process(axg_guard* guard, int64_t now_us, axg_state* out) {
         guard->has_query.store(true);
     }
     take_notes(*guard);
+    if (guard->service) {
+        guard->service->show(now_us, [&] { return axg::live_view_of(*guard, now_us); });
+    }
     const axg_state state = state_of(*guard);
     std::memcpy(out, &state, state_bytes(*guard));
     return AXG_STATUS_OK;

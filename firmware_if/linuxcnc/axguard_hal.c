@@ -4,7 +4,7 @@
 // arrives: the realtime component counts the last one down by itself.
 // With --bus the guard is axguardd on another computer: samples leave as frames, its frames come
 // in. Usage: loadusr -W axguard-hal MACHINE.yaml --linear-units [TRAJ]LINEAR_UNITS
-// [--mesh-root DIR] [--contact] [--simulation] [--bus CAN]
+// [--mesh-root DIR] [--contact] [--simulation] [--bus CAN], and those of axguard_show.h
 #include <axguard.h>
 #include <hal.h>
 #include <inttypes.h>
@@ -16,6 +16,7 @@
 #include <time.h>
 
 #include "firmware_if/linuxcnc/axguard_bus.h"
+#include "firmware_if/linuxcnc/axguard_show.h"
 #include "firmware_if/linuxcnc/axguard_units.h"
 #include "firmware_if/linuxcnc/axguard_wire.h"
 
@@ -410,6 +411,7 @@ static void take_sample(host* host, const union hal_stream_data record[]) {
 static bool make_guard(host* host, int count, char** words) {
     static char text[TEXT_BYTES];
     axg_options options;
+    axg_show show = {0};
     memset(&options, 0, sizeof options);
     options.version = AXG_INTERFACE_VERSION;
     options.engine = AXG_ENGINE_OF_MACHINE_FILE;
@@ -427,6 +429,8 @@ static bool make_guard(host* host, int count, char** words) {
         } else if (strcmp(words[i], "--bus") == 0 && i + 1 < count) {
             host->interface = words[++i];
             options.engine = AXG_ENGINE_CPU;  // only returns the values of the machine file
+        } else if (axg_show_take(&show, count, words, &i)) {
+            continue;
         } else if (words[i][0] != '-' && options.machine_file == NULL) {
             options.machine_file = words[i];
         } else {
@@ -437,7 +441,7 @@ static bool make_guard(host* host, int count, char** words) {
     if (options.machine_file == NULL) {
         fprintf(stderr,
                 "usage: axguard-hal MACHINE.yaml --linear-units [TRAJ]LINEAR_UNITS "
-                "[--mesh-root DIR] [--contact] [--simulation] [--bus CAN]\n");
+                "[--mesh-root DIR] [--contact] [--simulation] [--bus CAN] " AXG_SHOW_USAGE "\n");
         return false;
     }
     host->unit_mm = axg_unit_mm(unit);
@@ -470,7 +474,7 @@ static bool make_guard(host* host, int count, char** words) {
         fprintf(stderr, "axguard-hal: %s\n", text);
         return false;
     }
-    return true;
+    return axg_show_open(host->guard, &show, host->interface != NULL);
 }
 
 #define NEW_PIN(type, where, name) \

@@ -6,6 +6,7 @@ import json
 import math
 import os
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -234,6 +235,23 @@ def act(event):
         COMMAND.feedrate(event["value"])
 
 
+STOP_PINS = ("axguard.pair", "axguard.clearance-mm", "axguard.needed-mm")
+
+
+def status():
+    """What the guard's status socket sends."""
+    with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as reader:
+        reader.settimeout(5)
+        try:
+            reader.connect("axguard.status")
+        except OSError:  # the guard was killed
+            return {}
+        text = b""
+        while part := reader.recv(4096):
+            text += part
+    return json.loads(text)
+
+
 def main():
     time.sleep(1)
     poll()
@@ -244,6 +262,10 @@ def main():
             RESULT["armed"] = arm()
         if RESULT["armed"] or not SCENARIO["guarded"]:
             RESULT["ended"] = run_program("program.ngc")
+        if RESULT["ended"] == "stopped" and SCENARIO["guarded"]:
+            RESULT["pins_at_stop"] = {name: pin(name) for name in STOP_PINS}
+            time.sleep(0.3)  # at rest, what leads out is known
+            RESULT["status"] = status()
         if RESULT["ended"] == "stopped" and "jogs" in SCENARIO:
             jog_out()
         if RESULT["ended"] == "limit" and "length" in SCENARIO:
@@ -257,8 +279,7 @@ def main():
                 "axguard-stop.cause", "axguard-stop.permits", "axguard-stop.last-stop-periods",
                 "axguard-stop.simulation-unheard", "axguard.late", "axguard.samples-lost",
                 "axguard.stops", "axguard-stop.late-periods", "axguard-stop.refusal",
-                "axguard-stop.estop-ok", "axguard.pair", "axguard.clearance-mm",
-                "axguard.needed-mm", "axguard.phase")}
+                "axguard-stop.estop-ok", *STOP_PINS, "axguard.phase")}
         if SCENARIO.get("again"):
             RESULT["on_again"] = arm() and switch_on()
     finally:

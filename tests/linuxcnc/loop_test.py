@@ -227,14 +227,23 @@ STOP_WORDS = ("stopped: verdict: predicted: cutter - c, program line 5\n",
               "mm apart, the proof of a stop needs up to ", "jog ", ": clearance at least ", "Z+")
 
 
-def check_words(name, said, output):
+def check_words(name, said, output, dumps):
     """LinuxCNC's operator and the terminal have the pair, the line, the distances and the way out;
-    pair and clearance stay on the pins."""
+    pair and clearance stay on the pins, the status has them, and a black box is dumped."""
     shown = "\n".join(said.get("errors", []))
     faults = [f"{name}: {where} lacks {words!r}" for words in STOP_WORDS
               for where, text in (("the operator's message", shown), ("the terminal", output))
               if words not in text.replace("\r\n", "\n")]
+    status = said.get("status", {})
+    if (status.get("program_line"), status.get("pair")) != (5, ["cutter", "c"]):
+        faults.append(f"{name}: status: {status}")
+    if "jog " not in str(status.get("way_out")) or "Z+" not in status["way_out"]:
+        faults.append(f"{name}: status: no way out: {status}")
+    if not dumps:
+        faults.append(f"{name}: no dump of the black box")
     pins = said.get("pins", {})
+    if any(pins[key] != value for key, value in said["pins_at_stop"].items()):
+        faults.append(f"{name}: pins: found {pins}, expected {said['pins_at_stop']}")
     has, needed = (float(pins.get(f"axguard.{pin}-mm", -1)) for pin in ("clearance", "needed"))
     if not 0 < has < needed:
         faults.append(f"{name}: pins: clearance {has}, needed {needed}")
@@ -339,7 +348,8 @@ def run_all(given):
         mine = check(name, is_stopped, said, rows, overruns, judged, facts)
         mine += check_key(said, output) if name == "tool_unknown" else []
         mine += check_length(said, place.unit_mm) if name.startswith("tool_length") else []
-        mine += check_words(name, said, output) if name == "collide" else []
+        if name == "collide":
+            mine += check_words(name, said, output, list(place.folder.glob("linuxcnc-*.axgbox")))
         facts_of[name] = {"samples": len(rows), "overruns": overruns, "ended": said.get("ended"),
                           "contacts": sum(stop["reason"] != "tool" for stop in judged["stops"]),
                           "stops": facts, "resumed": said.get("resumed", 0),

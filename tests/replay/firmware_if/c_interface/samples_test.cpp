@@ -1,11 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // Samples in place of frames: the same permits and the same stop as from the frames of a board,
 // the number of each sample is believed, and what is no sample of the machine is refused.
+#include <atomic>
+#include <chrono>
 #include <cstring>
+#include <filesystem>
 #include <numbers>
+#include <optional>
+#include <thread>
 
+#include "firmware_if/axguardd/status_json.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/live/status_line.hpp"
 #include "firmware_if/receiver/axis_receiver.hpp"
+#include "firmware_if/system/status_socket.hpp"
 #include "tests/support/c_host.hpp"
+#include "tests/support/json_value.hpp"
 #include "tests/support/simulated_frames.hpp"
 
 namespace axg {
@@ -223,6 +233,18 @@ TEST(CInterfaceSamples, AStopIsExplainedAndAtRestWithAWayOut) {
     EXPECT_EQ(std::string(at_rest.text).rfind(words + "\njog ", 0), 0U) << at_rest.text;
     EXPECT_EQ(at_rest.line_count, stop.line_count + 1);
     EXPECT_EQ(axg_guard_explain(host.guard, 0, nullptr), AXG_STATUS_BAD_CALL);
+    for (int i = 0; i < 600; ++i) {  // a person moves Z up by hand, and rests
+        sample.latched_us += 1000;
+        ++sample.number;
+        sample.mode = i < 300 ? 1 : 0;
+        sample.position[2] += i < 250 ? 0.02 : 0;
+        play_sample(host, sample);
+    }
+    ASSERT_EQ(host.state.phase, AXG_PHASE_STOPPED);
+    const axg_stop higher = explained(host, 12);
+    EXPECT_EQ(higher.clearance_mm, stop.clearance_mm);
+    EXPECT_NE(std::string(higher.text), std::string(at_rest.text)) << "from where it is now";
+    EXPECT_EQ(std::string(higher.text).rfind(words + "\njog ", 0), 0U) << higher.text;
 }
 
 // An unknown tool stops, and is no dead end: the words name it, the file and the way out, and the
@@ -267,7 +289,154 @@ TEST(CInterfaceSamples, AnUnknownToolIsExplainedAndLeftByAnother) {
     stand(1, 0, 300);
     EXPECT_EQ(words(), "stopped: verdict: tool");
     EXPECT_EQ(reset(), "");
-    EXPECT_NE(host.state.phase, AXG_PHASE_STOPPED);
+    stand(1, 0, 300);
+    ASSERT_EQ(host.state.phase, AXG_PHASE_READY);
+    EXPECT_EQ(axg_guard_notify(host.guard, AXG_EVENT_ARM, host.now), AXG_STATUS_OK);
+    stand(1, 0, 10);
+    EXPECT_EQ(host.state.phase, AXG_PHASE_ARMED) << "without a restart";
+}
+
+/// Keys of a JSON object, in order.
+std::vector<std::string> keys_of(const test::Json& json) {
+    std::vector<std::string> keys;
+    for (const auto& [key, value] : json.items()) {
+        keys.push_back(key);
+    }
+    return keys;
+}
+
+/// As play_samples(), but not much faster than a machine, so that the logger has no record to lose.
+std::size_t play_slowly(test::CHost& host, std::span<const axg_sample> samples) {
+    EXPECT_EQ(axg_guard_start(host.guard, samples[0].latched_us), AXG_STATUS_OK);
+    host.state.next_due_us = samples[0].latched_us;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        play_sample(host, samples[i]);
+        if (!host.ok || host.state.phase == AXG_PHASE_STOPPED) {
+            return i + 1;
+        }
+        if (i % 100 == 0) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        }
+    }
+    return samples.size();
+}
+
+/// What the guard's status socket sends, while its process goes on with samples at rest.
+std::string status_at_rest(test::CHost& host, axg_sample& sample, const std::string& socket) {
+    std::string line, fault;
+    std::atomic<bool> is_read{false};
+    std::thread reader([&] {
+        line = read_status(socket, fault);
+        is_read.store(true);
+    });
+    while (!is_read.load()) {
+        sample.latched_us += 1000;
+        ++sample.number;
+        play_sample(host, sample);
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    reader.join();
+    EXPECT_EQ(fault, "");
+    return line;
+}
+
+// People see a guard in another program's process as they see axguardd's: the same document on its
+// socket, the same metrics, and a dump of the black box in which a replay finds the stop.
+TEST(CInterfaceSamples, AGuardThatIsShownIsShownAsAxguardd) {
+    const test::Workshop shop;
+    const std::string socket = shop.file("status"), metrics = shop.file("m.prom");
+    const std::string folder = shop.file(".");
+    const axg_show_options shown{"linuxcnc", socket.c_str(), metrics.c_str(), folder.c_str(), 2};
+    const Machine machine = test::load_paper_machine().machine;
+    const std::string program = shop.write(
+        "down.ngc", "T1 M6\nG4 P0.5\nG0 X20 Y50\nG0 X0 Y107.132 A-19.2 C97\nG0 Z-230\nM2\n");
+    const std::vector<axg_sample> samples =
+        samples_of(machine, test::simulated_frames(machine, program));
+    {
+        test::CHost host(test::c_options(AXG_MODE_STOPPABLE));
+        ASSERT_EQ(axg_guard_show(host.guard, &shown, nullptr, 0), AXG_STATUS_OK);
+        EXPECT_EQ(axg_guard_show(host.guard, &shown, nullptr, 0), AXG_STATUS_BAD_CALL) << "twice";
+        axg_sample sample = samples[play_slowly(host, samples) - 1];
+        ASSERT_STREQ(host.state.cause, "verdict");
+        host.arms = false;
+        sample.mode = 0;
+        while (host.state.is_confirmed == 0) {
+            sample.latched_us += 1000;
+            ++sample.number;
+            play_sample(host, sample);
+        }
+        const axg_stop stop = explained(host, 12);
+        const std::string line = status_at_rest(host, sample, socket);
+        const std::optional<StatusWords> words = words_of_status(line);
+        ASSERT_TRUE(words) << line;
+        const std::string pair = axg_guard_pair_name(host.guard, stop.pair);
+        EXPECT_EQ(words->text.rfind(
+                      "linuxcnc: stopped: verdict: predicted: " + pair + ", program line 12, ", 0),
+                  0U)
+            << words->text;
+        ASSERT_EQ(words->ways_out.size(), 1U) << words->text;
+        EXPECT_EQ(words->ways_out[0].rfind("jog ", 0), 0U) << words->ways_out[0];
+        EXPECT_NE(std::string(stop.text).find(words->ways_out[0]), std::string::npos);
+        const auto json = test::Json::parse(line);
+        EXPECT_EQ(json["file"], "paper-trunnion.yaml");
+        EXPECT_NEAR(json["why"]["available_mm"].get<double>(), stop.clearance_mm, 1e-4);
+        EXPECT_LT(json["age_ms"], 1000) << "by the readers' clock, not by that of the samples";
+        std::array<char, kStatusLineBytesMax> room{};
+        const LiveView view;  // of an axguardd
+        const StatusLine other(machine, "m.yaml", "can0", "stoppable", "0");
+        const std::size_t size = other.write(&view, {}, 0, room);
+        EXPECT_EQ(keys_of(json), keys_of(test::Json::parse(std::string(room.data(), size))));
+        const std::string stopped = "axguard_phase_info{bus=\"linuxcnc\",phase=\"stopped\"} 1";
+        std::string page;
+        for (int i = 0; i < 200 && page.find(stopped) == std::string::npos; ++i) {
+            (void)status_at_rest(host, sample, socket);
+            page = test::content_of(metrics);  // once a second
+        }
+        EXPECT_NE(page.find(stopped), std::string::npos);
+        EXPECT_EQ(page.find("admission"), std::string::npos) << "there was none";
+    }
+    EXPECT_FALSE(std::filesystem::exists(socket));
+    EXPECT_FALSE(std::filesystem::exists(metrics));
+    std::vector<std::string> dumps;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        if (entry.path().filename().string().starts_with("linuxcnc-")) {
+            dumps.push_back(entry.path().string());
+        }
+    }
+    ASSERT_EQ(dumps.size(), 1U);
+    test::Workshop replay;
+    EXPECT_EQ(replay.run("replay " + test::kPaperMachine + " " + dumps[0] + " --engine cpu"),
+              kExitCollision)
+        << replay.err;
+    EXPECT_NE(replay.out.find("predicted"), std::string::npos) << replay.out;
+}
+
+TEST(CInterfaceSamples, WhatCannotBeShownIsRefused) {
+    const test::Workshop shop;
+    const test::CHost host(test::c_options(AXG_MODE_CONTACT));
+    std::array<char, 400> text{};
+    const auto said = [&](const axg_show_options& options) {
+        EXPECT_EQ(axg_guard_show(host.guard, &options, text.data(), text.size()),
+                  AXG_STATUS_BAD_CALL);
+        return std::string(text.data());
+    };
+    EXPECT_EQ(axg_guard_show(host.guard, nullptr, nullptr, 0), AXG_STATUS_BAD_CALL);
+    for (const char* const name : {static_cast<const char*>(nullptr), "", "a b", "../a",
+                                   "123456789012345678901234567890123"}) {
+        EXPECT_EQ(said({name, nullptr, nullptr, nullptr, 0}),
+                  "name: expected 1 to 32 letters, digits, - or _");
+    }
+    EXPECT_EQ(said({"a", nullptr, nullptr, nullptr, 1}), "black_boxes: no folder. Set state_dir.");
+    const std::string file = shop.write("file", "precious");
+    EXPECT_NE(said({"a", file.c_str(), nullptr, nullptr, 0}).find("not a socket"),
+              std::string::npos)
+        << text.data();
+    EXPECT_EQ(test::content_of(file), "precious");
+    const axg_show_options none{"a", nullptr, nullptr, nullptr, 0};
+    EXPECT_EQ(axg_guard_show(host.guard, &none, nullptr, 0), AXG_STATUS_OK);
+    const test::CHost started(test::c_options(AXG_MODE_CONTACT));
+    ASSERT_EQ(axg_guard_start(started.guard, 0), AXG_STATUS_OK);
+    EXPECT_EQ(axg_guard_show(started.guard, &none, nullptr, 0), AXG_STATUS_BAD_CALL);
 }
 
 // A number that is left out is a sample that was lost, wherever it was lost.
