@@ -177,7 +177,8 @@ typedef struct axg_stop {
 typedef struct axg_axis {
     char name[8];
     uint8_t is_rotary, is_endless;
-    uint8_t reserved[6];
+    uint8_t reserved[2];
+    float skew_mm;    // of a gantry's two joints, rounded down; 0: one joint
     double min, max;  // travel; 0 of an endless axis
     double speed, acceleration;
     double jerk;                         // 0: no limit is promised

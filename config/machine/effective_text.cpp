@@ -49,9 +49,9 @@ template <class Owner>
 void add_scalar(Lines& lines, const std::string& line, const ScalarKey<Owner>& row,
                 const Owner& owner) {
     if (row.number != nullptr) {
-        const bool is_there = owner.*row.number != 0 || row.when == KeyLine::always;
-        if (is_there && is_finite(owner.*row.number)) {
-            lines.add(line, {owner.*row.number});
+        const double value = owner.*row.number;
+        if (is_finite(value) && (value != 0 || row.when == KeyLine::always)) {
+            lines.add(line, {value});
         }
         return;
     }

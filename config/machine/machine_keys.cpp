@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "config/machine/machine_keys.hpp"
 
+#include <algorithm>
 #include <array>
 #include <type_traits>
 
@@ -97,7 +98,17 @@ constexpr std::array<ScalarKey<Axis>, 7> axis_rows(bool is_rotary) {
                &Axis::states_following_error),
     };
 }
-constexpr std::array kLinearKeys = axis_rows(false), kRotaryKeys = axis_rows(true);
+constexpr std::array kRotaryKeys = axis_rows(true);
+
+/// Only slides have a second joint.
+constexpr std::array<ScalarKey<Axis>, 8> linear_rows() {
+    std::array<ScalarKey<Axis>, 8> rows{};
+    std::copy_n(axis_rows(false).begin(), 7, rows.begin());
+    rows.back() = number("skew_mm", "skew_mm", {0, kSkewMmMax}, &Axis::skew_mm);
+    rows.back().when = KeyLine::unless_first;
+    return rows;
+}
+constexpr std::array kLinearKeys = linear_rows();
 
 /// A line only where an error is stated: hashes of files without any stay as they are.
 template <class Owner>
@@ -207,7 +218,7 @@ ScalarKeys<Machine> top_keys() noexcept {
     return kTopKeys;
 }
 ScalarKeys<Axis> axis_keys(AxisKind kind) noexcept {
-    return kind == AxisKind::rotary ? kRotaryKeys : kLinearKeys;
+    return kind == AxisKind::rotary ? ScalarKeys<Axis>(kRotaryKeys) : ScalarKeys<Axis>(kLinearKeys);
 }
 ScalarKeys<Joint> joint_keys(AxisKind kind) noexcept {
     return ScalarKeys<Joint>(kJointKeys).first(kind == AxisKind::rotary ? 2 : 1);

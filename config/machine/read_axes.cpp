@@ -2,6 +2,7 @@
 // The section `axes` of a machine file. Degrees become radians here and in machine_keys.cpp.
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -214,6 +215,14 @@ void read_axes(MapReader& top, MachineDraft& draft) {
         }
         draft.machine.axes.push_back(std::move(axis));
         draft.axis_lines.push_back(entry.line);
+    }
+    const double skew_mm =
+        std::accumulate(draft.machine.axes.begin(), draft.machine.axes.end(), 0.0,
+                        [](double sum, const Axis& axis) { return sum + axis.skew_mm; });
+    draft.machine.pose_errors.are_stated |= skew_mm > 0;
+    if (skew_mm > kSkewMmMax * (1 + 1e-9)) {
+        top.report("axes", "skew_mm of " + shown(skew_mm) + " in sum",
+                   "at most " + shown(kSkewMmMax) + " for all axes together");
     }
     put_in_order(slots, draft);
 }

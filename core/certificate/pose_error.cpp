@@ -63,8 +63,9 @@ void walk(const Machine& machine, const JointPath& path, Ball ball, bool from_a,
     for (std::uint32_t k = 0; k < path.count; ++k) {
         const std::uint32_t at = from_a ? k : path.count - 1 - k;
         const Joint& joint = machine.bodies[path.body[at]].joint;
-        if (machine.axes[joint.axis].kind == AxisKind::linear) {
-            const double error = joint.direction_error_rad * within[joint.axis];
+        const Axis& axis = machine.axes[joint.axis];
+        if (axis.kind == AxisKind::linear) {
+            const double error = joint.direction_error_rad * within[joint.axis] + axis.skew_mm;
             errors[at] = std::min(errors[at], error);
             ball.radius_mm += within[joint.axis] + error;
             continue;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the stated errors of joints and places take from the distance of two bodies: pivots,
-// directions of axes, places of bodies and tools that a shop does not know exactly.
+// directions of axes, places of bodies and tools that a shop does not know exactly, and the skew of
+// gantries.
 // Claim: the true distance is at most this much below that of the machine file, at all positions
 // within `within`. Proof: docs/theory/certificate.md, "Stated errors". Test:
 // tests/property/core/certificate/pose_error_test.cpp.

@@ -46,6 +46,9 @@ struct Axis {
     double position_error = 0, following_error = 0;
     // Whether the machine file states them; `axguard check` lists the defaults used otherwise.
     bool states_position_error = false, states_following_error = false;
+    // Two joints move this axis (a gantry), and their positions differ by at most this, mm. The
+    // position of the axis is their mean. 0: one joint.
+    double skew_mm = 0;
 };
 
 [[nodiscard]] constexpr bool has_jerk_limit(const Axis& axis) noexcept {

@@ -24,6 +24,12 @@ std::uint32_t microseconds_up(double seconds) noexcept {
     return static_cast<std::uint32_t>(std::ceil(seconds * kUsPerS - kRoundingUs));
 }
 
+/// A tolerance that a board compares is none beyond the proven one.
+float rounded_down(double value) noexcept {
+    const auto nearest = static_cast<float>(value);
+    return nearest > value ? std::nextafter(nearest, 0.0F) : nearest;
+}
+
 axg_axis axis_of(const Axis& axis, const JogRules& jogs) noexcept {
     axg_axis out{};
     axis.name.copy(out.name, sizeof out.name - 1);
@@ -36,6 +42,7 @@ axg_axis axis_of(const Axis& axis, const JogRules& jogs) noexcept {
     out.acceleration = axis.acceleration_max * unit;
     out.jerk = has_jerk_limit(axis) ? axis.jerk_max * unit : 0;
     out.stopping = axis.stopping_min * unit;
+    out.skew_mm = rounded_down(axis.skew_mm);
     if (jogs.is_promised) {
         const AxisLimits limits = jog_limits(jogs, axis);
         out.jog_speed = limits.speed_max * unit;

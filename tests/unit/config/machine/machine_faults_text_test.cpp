@@ -40,7 +40,7 @@ TEST(MachineFaultsKeys, MisspeltKeyGetsTheNearestOne) {
               "m:4: axes.X.travel_nm: unknown key (expected one of kind, slot, travel_mm, "
               "speed_mm_min, acceleration_mm_s2, jerk_mm_s3, stopping_mm_s2, stopping_most_mm_s2, "
               "position_error_mm, "
-              "following_error_mm). Did you mean \"travel_mm\"?\n");
+              "following_error_mm, skew_mm). Did you mean \"travel_mm\"?\n");
 }
 
 TEST(MachineFaultsKeys, KeyInTheWrongCaseGetsTheNearestOne) {

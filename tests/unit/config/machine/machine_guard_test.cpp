@@ -416,6 +416,27 @@ TEST(MachineGuard, TheHardestStopIsNoSofterThanTheOthers) {
     EXPECT_NE(faults.find("the larger of stopping and acceleration"), std::string::npos) << faults;
 }
 
+// A gantry changes the hash, and its absence does not.
+TEST(MachineGuard, SkewsHaveABoundInSum) {
+    const auto with_skew = [](const std::string& text, const std::string& value) {
+        return with(text, "stopping_mm_s2: 1500,", "skew_mm: " + value + ", stopping_mm_s2: 1500,");
+    };
+    Machine machine;
+    ASSERT_TRUE(parse_machine(kSmallMachine, "m", machine).empty());
+    EXPECT_EQ(machine.axes[0].skew_mm, 0);
+    EXPECT_EQ(effective_text(machine).find("skew"), std::string::npos);
+    ASSERT_TRUE(parse_machine(with_skew(kSmallMachine, "0.15"), "m", machine).empty());
+    EXPECT_EQ(machine.axes[0].skew_mm, 0.15);
+    EXPECT_NE(effective_text(machine).find("axes.X.skew_mm = 0.15\n"), std::string::npos);
+    EXPECT_NE(faults_of(with_skew(kSmallMachine, "0.151")).find("axes.X.skew_mm"),
+              std::string::npos);
+    std::string two = with_skew(kSmallMachine, "0.08");
+    two.insert(two.find("  A: {"),
+               "  Y: {kind: linear, skew_mm: 0.08, travel_mm: [-9, 9], speed_mm_min: 100, "
+               "acceleration_mm_s2: 2000, jerk_mm_s3: none, stopping_mm_s2: 1500}\n");
+    EXPECT_NE(faults_of(two).find("skew_mm of 0.16 in sum"), std::string::npos) << faults_of(two);
+}
+
 TEST(MachineGuard, WordsOfTheFaults) {
     EXPECT_EQ(
         faults_of(with(kSmallMachine, "free_jerk: any", "free_jerk: none")),
@@ -431,7 +452,7 @@ TEST(MachineGuard, WordsOfTheFaults) {
               "m:5: axes.X.position_error_deg: unknown key (expected one of kind, slot, travel_mm, "
               "speed_mm_min, acceleration_mm_s2, jerk_mm_s3, stopping_mm_s2, stopping_most_mm_s2, "
               "position_error_mm, "
-              "following_error_mm). Did you mean \"position_error_mm\"?\n");
+              "following_error_mm, skew_mm). Did you mean \"position_error_mm\"?\n");
 }
 
 }  // namespace

@@ -8,10 +8,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "core/certificate/pose_error.hpp"
 #include "hil_replay/lab/ablations/ablations.hpp"
 #include "tests/support/containment_fixture.hpp"
 #include "tests/support/table_and_head.hpp"
@@ -133,6 +135,22 @@ TEST_F(StopCertificateTest, StatedErrorsCountOrNothingIsProven) {
     EXPECT_DOUBLE_EQ(pair_task(m, 1, kNoIndex, extents).pose_error_mm, kPlacementErrorMm + 0.25);
     m.pose_errors.mm.pop_back();
     EXPECT_EQ(pair_task(m, 0, 1, extents).pose_error_mm, std::numeric_limits<double>::infinity());
+}
+
+// A gantry may place what it carries elsewhere than its middle: in no pair that it does not move.
+TEST_F(StopCertificateTest, TheSkewOfAGantryCountsWhereItMoves) {
+    const auto error = [this] {
+        return pose_error_mm(m, m.pairs[0], 1, BodyExtent{}, BodyExtent{}, error_range(m));
+    };
+    const auto axis_of = [this](std::uint32_t body) { return m.bodies[body].joint.axis; };
+    EXPECT_EQ(error(), 0);
+    m.axes[axis_of(kTable)].skew_mm = 0.125;
+    EXPECT_NEAR(error(), 0.125, 1e-12);
+    m.axes[axis_of(kHead)].skew_mm = 0.0625;
+    EXPECT_NEAR(error(), 0.1875, 1e-12);
+    m.bodies[kTable].parent = kNoIndex;
+    m.bodies[kTable].joint.axis = kNoIndex;
+    EXPECT_NEAR(error(), 0.0625, 1e-12);
 }
 
 // The box is what the reach of each axis says, around the newest position; an axis at rest moves
