@@ -3,8 +3,7 @@
 // (libaxguard) in this process, and the guard's frames back. If it is killed, no later permit
 // arrives: the realtime component counts the last one down by itself.
 // With --bus the guard is axguardd on another computer: samples leave as frames, its frames come
-// in. Usage: loadusr -W axguard-hal MACHINE.yaml --linear-units [TRAJ]LINEAR_UNITS
-// [--mesh-root DIR] [--contact] [--simulation] [--bus CAN], and those of axguard_show.h
+// in. Options: axguard-hal.1.
 #include <axguard.h>
 #include <hal.h>
 #include <inttypes.h>
@@ -16,6 +15,8 @@
 #include <time.h>
 
 #include "firmware_if/linuxcnc/axguard_bus.h"
+#include "firmware_if/linuxcnc/axguard_fit.h"
+#include "firmware_if/linuxcnc/axguard_record.h"
 #include "firmware_if/linuxcnc/axguard_show.h"
 #include "firmware_if/linuxcnc/axguard_units.h"
 #include "firmware_if/linuxcnc/axguard_wire.h"
@@ -47,9 +48,9 @@ typedef struct host {
     axg_phase phase_said;
     bool has_said;
     explained explained;
-    axg_stop stop;   // in force
-    double unit_mm;  // length of the unit of LinuxCNC's pins
-    uint16_t tool;   // whose length was sent
+    axg_stop stop;             // in force
+    double unit_mm, unit_deg;  // the units of LinuxCNC's pins
+    uint16_t tool;             // whose length was sent
     bool has_tool;
     uint32_t lines_said;
     int32_t program_line;  // of the stop
@@ -63,8 +64,8 @@ typedef struct host {
     int64_t arm_until_us;   // 0: nobody arms
     const char* interface;  // of the bus to the guard; null: it is in this process
     axg_bus bus;
-    bool is_lost;     // a frame of ours could not be sent
-    bool is_refused;  // the last sample was none of this machine
+    bool is_lost, is_refused;  // a frame was not sent; the last sample was none of this machine
+    FILE* record;              // of the samples; null: none
 } host;
 
 static volatile sig_atomic_t ends;
@@ -113,7 +114,7 @@ static void send_done(host* host, uint64_t number) {
 
 // mm or degrees of the guard in one unit of the joint's pins.
 static double unit_of(const host* host, uint32_t joint) {
-    return host->terms.axes[joint].is_rotary != 0 ? 1 : host->unit_mm;
+    return host->terms.axes[joint].is_rotary != 0 ? host->unit_deg : host->unit_mm;
 }
 
 static bool send_options(host* host) {
@@ -327,7 +328,7 @@ static void put_on_bus(host* host, const axg_frame* frame) {
 
 // False: not a sample of this machine.
 static bool give(host* host, const axg_sample* sample) {
-    if (host->interface == NULL) {
+    if (host->interface == NULL && host->record == NULL) {
         return axg_guard_put_sample(host->guard, sample, now_us(host)) == AXG_STATUS_OK;
     }
     axg_frame frames[AXG_SAMPLE_FRAMES_MAX];
@@ -336,10 +337,17 @@ static bool give(host* host, const axg_sample* sample) {
         AXG_STATUS_OK) {
         return false;
     }
+    bool is_given = true;
     for (uint32_t i = 0; i < count; ++i) {
-        put_on_bus(host, &frames[i]);
+        axg_record_frame(host->record, sample, &frames[i]);
+        if (host->interface != NULL) {
+            put_on_bus(host, &frames[i]);
+        } else {  // as axg_guard_put_sample, which encodes no sample twice
+            frames[i].time_us = i == 0 ? frames[i].time_us : now_us(host);
+            is_given = axg_guard_receive(host->guard, &frames[i]) == AXG_STATUS_OK && is_given;
+        }
     }
-    return true;
+    return is_given;
 }
 
 static void take_hash(host* host, const union hal_stream_data record[]) {
@@ -416,10 +424,12 @@ static bool make_guard(host* host, int count, char** words) {
     options.version = AXG_INTERFACE_VERSION;
     options.engine = AXG_ENGINE_OF_MACHINE_FILE;
     options.mode = AXG_MODE_STOPPABLE;
-    const char* unit = "nothing";
+    const char *unit = "nothing", *angle = "nothing";
     for (int i = 1; i < count; ++i) {
         if (strcmp(words[i], "--linear-units") == 0 && i + 1 < count) {
             unit = words[++i];
+        } else if (strcmp(words[i], "--angular-units") == 0 && i + 1 < count) {
+            angle = words[++i];
         } else if (strcmp(words[i], "--mesh-root") == 0 && i + 1 < count) {
             options.mesh_root = words[++i];
         } else if (strcmp(words[i], "--contact") == 0) {
@@ -431,6 +441,8 @@ static bool make_guard(host* host, int count, char** words) {
             options.engine = AXG_ENGINE_CPU;  // only returns the values of the machine file
         } else if (axg_show_take(&show, count, words, &i)) {
             continue;
+        } else if (strcmp(words[i], "--record") == 0 && i + 1 < count) {
+            host->record = axg_record_open(words[++i]);
         } else if (words[i][0] != '-' && options.machine_file == NULL) {
             options.machine_file = words[i];
         } else {
@@ -441,7 +453,8 @@ static bool make_guard(host* host, int count, char** words) {
     if (options.machine_file == NULL) {
         fprintf(stderr,
                 "usage: axguard-hal MACHINE.yaml --linear-units [TRAJ]LINEAR_UNITS "
-                "[--mesh-root DIR] [--contact] [--simulation] [--bus CAN] " AXG_SHOW_USAGE "\n");
+                "--angular-units [TRAJ]ANGULAR_UNITS [--mesh-root DIR] [--contact] [--simulation] "
+                "[--bus CAN] [--record FILE] " AXG_SHOW_USAGE "\n");
         return false;
     }
     host->unit_mm = axg_unit_mm(unit);
@@ -456,13 +469,8 @@ static bool make_guard(host* host, int count, char** words) {
     if (status != AXG_STATUS_OK || axg_guard_terms(host->guard, &host->terms) != AXG_STATUS_OK) {
         return false;
     }
-    const axg_terms* const terms = &host->terms;
-    if (terms->takes_samples == 0 || terms->is_independent == 0 || terms->permit_version != 2 ||
-        terms->axis_count > AXG_WIRE_JOINTS_MAX) {
-        fprintf(stderr,
-                "axguard-hal: %s: needs can.format classical or fd, no can.ahead, can.permit 2, "
-                "guard.stop_promise independent, and at most %d axes.\n",
-                options.machine_file, AXG_WIRE_JOINTS_MAX);
+    host->unit_deg = axg_unit_deg(angle);
+    if (!axg_is_fit(&host->terms, options.machine_file, angle)) {
         return false;
     }
     if (host->interface != NULL && host->is_simulation) {
@@ -470,7 +478,7 @@ static bool make_guard(host* host, int count, char** words) {
         return false;
     }
     if (host->interface != NULL &&
-        !axg_bus_open(&host->bus, host->interface, terms, text, sizeof text)) {
+        !axg_bus_open(&host->bus, host->interface, &host->terms, text, sizeof text)) {
         fprintf(stderr, "axguard-hal: %s\n", text);
         return false;
     }
@@ -588,6 +596,7 @@ int main(int count, char** words) {
         hal_exit(host.comp_id);
     }
     axg_bus_close(&host.bus);
+    axg_record_close(host.record);
     axg_guard_destroy(host.guard);
     return result;
 }

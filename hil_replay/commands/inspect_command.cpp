@@ -110,7 +110,10 @@ void print_inspect(std::FILE* out, const InspectReport& report, const TraceEnd& 
             print_limits(*report.machine, survey.limits(), out);
         }
         if (report.proposes_limits) {
-            print_proposed_limits(*report.machine, survey.limits(), out);
+            print_proposed_limits(*report.machine, survey.limits(),
+                                  fmt::format("{}, {} samples", escaped(report.file, 4096),
+                                              survey.snapshots().snapshots),
+                                  out);
         }
     }
     if (!end.fault.empty()) {

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace axg {
 
 std::array<LimitRow, 3> limit_rows(const Axis& axis, const AxisLimitSurvey& seen) {
@@ -43,7 +45,8 @@ void print_limits(const Machine& machine, const LimitSurvey& survey, std::FILE* 
     fmt::print(words, "measured: the smallest value that explains the positions in free motion\n");
 }
 
-void print_proposed_limits(const Machine& machine, const LimitSurvey& survey, std::FILE* words) {
+void print_proposed_limits(const Machine& machine, const LimitSurvey& survey,
+                           const std::string& evidence, std::FILE* words) {
     fmt::print(words, "\nproposed for the machine file, 10 % above the measured values:\n");
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
         const Axis& axis = machine.axes[i];
@@ -57,7 +60,15 @@ void print_proposed_limits(const Machine& machine, const LimitSurvey& survey, st
                 unknown += (unknown.empty() ? "" : ", ") + key.key;
             }
         }
-        fmt::print(words, "  {}: {{{}}}{}{}\n", axis.name, known,
+        const double most = in_axis_units(axis, std::max(survey.axes()[i].acceleration.measured,
+                                                         survey.axes()[i].seen_acceleration));
+        const std::string measured =
+            proposed.acceleration > 0
+                ? fmt::format("  # {}: at most {:.6g} {}, times {:.3g}", evidence, most,
+                              unit_of(axis, LimitFigure::acceleration),
+                              proposed.acceleration / most)
+                : "";
+        fmt::print(words, "  {}: {{{}}}{}{}{}\n", axis.name, known, measured,
                    unknown.empty() ? "" : "  # not in this trace: ", unknown);
     }
 }

@@ -33,7 +33,9 @@ struct ProposedKey {
                                              std::size_t axis);
 
 void print_limits(const Machine& machine, const LimitSurvey& survey, std::FILE* words);
-/// Lines for the section `axes` of the machine file.
-void print_proposed_limits(const Machine& machine, const LimitSurvey& survey, std::FILE* words);
+/// Lines for the section `axes` of the machine file, each with what it rests on.
+/// @param evidence  the trace, and how many samples it has
+void print_proposed_limits(const Machine& machine, const LimitSurvey& survey,
+                           const std::string& evidence, std::FILE* words);
 
 }  // namespace axg

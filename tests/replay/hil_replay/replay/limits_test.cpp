@@ -90,6 +90,10 @@ TEST_F(Limits, WhatInspectProposesIsEnoughForTheTrace) {
     const Json all = Json::parse(content_of(shop->file("limits.json")))["machine"];
     EXPECT_GT(all["limits"]["X"]["acceleration"]["samples_above"], 0);
     EXPECT_NE(shop->out.find("proposed for the machine file"), std::string::npos) << shop->out;
+    EXPECT_TRUE(std::regex_search(
+        shop->out, std::regex("  X: \\{.*\\}  # trace.log, [0-9]+ samples: at most [0-9.]+ mm/s2, "
+                              "times 1\\.[1-2][0-9]?  # not")))
+        << shop->out;
     const std::size_t unknown = shop->out.find("# not in this trace: ");
     ASSERT_NE(unknown, std::string::npos);
     EXPECT_NE(shop->out.find("stopping_mm_s2", unknown), std::string::npos) << shop->out;

@@ -30,5 +30,20 @@ TEST(LinuxCncUnits, AnythingElseIsNoUnit) {
     }
 }
 
+TEST(LinuxCncUnits, AnglesAreThoseOfTheIniToo) {
+    for (const char* text : {"deg", "Degree", "1"}) {
+        EXPECT_EQ(axg_unit_deg(text), 1) << text;
+    }
+    for (const char* text : {"rad", "RADIAN", "0.017453292519943295"}) {
+        EXPECT_NEAR(axg_unit_deg(text), 180 / 3.14159265358979312, 1e-12) << text;
+    }
+    for (const char* text : {"grad", "gon"}) {
+        EXPECT_EQ(axg_unit_deg(text), 0.9) << text;
+    }
+    for (const char* text : {"", "nothing", "[TRAJ]ANGULAR_UNITS", "degrees", "turn", "mm", "0"}) {
+        EXPECT_EQ(axg_unit_deg(text), 0) << text;
+    }
+}
+
 }  // namespace
 }  // namespace axg
