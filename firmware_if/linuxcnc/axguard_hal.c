@@ -142,6 +142,7 @@ static bool send_options(host* host) {
         option[AXG_WIRE_STOPPING + i] = terms->axes[i].stopping / unit;
         option[AXG_WIRE_JOG_SPEED + i] = terms->axes[i].jog_speed / unit;
         option[AXG_WIRE_JOG_ACCELERATION + i] = terms->axes[i].jog_acceleration / unit;
+        option[AXG_WIRE_SKEW + i] = (double)terms->axes[i].skew_mm / unit;
     }
     bool is_sent = true;
     for (uint32_t i = 0; i < AXG_WIRE_OPTIONS; ++i) {

@@ -20,7 +20,7 @@ typedef struct stop_pins {
     hal_bit_t *arm, *permit_ok, *feed_inhibit, *estop_ok, *stopping, *spindle_on, *home_unguarded,
         *change_unguarded;
     hal_float_t *adaptive_feed, *length, *length_tolerance;
-    hal_bit_t* length_differs;
+    hal_bit_t *length_differs, *skewed;
     hal_bit_t *tool_change, *tool_changed, *tool_change_out, *tool_changed_in, *jog, *jog_down;
     hal_s32_t *tool_number, *jog_joint;
     hal_u32_t *mode, *tool, *number, *cause, *refusal, *permits, *left, *simulation_wait_us,
@@ -59,6 +59,7 @@ static inline int make_stop_pins(stop_pins* pins, int joints, int comp_id) {
     NEW_PIN(float, HAL_IN, &pins->length, "axguard-stop.tool-offset-z");
     NEW_PIN(float, HAL_IN, &pins->length_tolerance, "axguard-stop.tool-length-tolerance");
     NEW_PIN(bit, HAL_OUT, &pins->length_differs, "axguard-stop.tool-length-differs");
+    NEW_PIN(bit, HAL_OUT, &pins->skewed, "axguard-stop.skewed");
     NEW_PIN(bit, HAL_IN, &pins->jog, "axguard-stop.jog");
     NEW_PIN(s32, HAL_IN, &pins->jog_joint, "axguard-stop.jog-joint");
     NEW_PIN(bit, HAL_IN, &pins->jog_down, "axguard-stop.jog-down");

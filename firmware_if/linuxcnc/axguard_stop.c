@@ -14,7 +14,9 @@
 #include <time.h>
 
 #include "firmware_if/board/axguard_board.h"
+#include "firmware_if/linuxcnc/axguard_joints.h"
 #include "firmware_if/linuxcnc/axguard_length.h"
+#include "firmware_if/linuxcnc/axguard_options.h"
 #include "firmware_if/linuxcnc/axguard_period.h"
 #include "firmware_if/linuxcnc/axguard_pins.h"
 #include "firmware_if/linuxcnc/axguard_tool.h"
@@ -26,6 +28,8 @@ MODULE_LICENSE("GPL");
 
 static int joints = 3;
 RTAPI_MP_INT(joints, "number of joints, as the axes of the machine file");
+static char* coordinates = "";
+RTAPI_MP_STRING(coordinates, "a letter for each joint, equal ones for a gantry: replaces joints");
 
 #define STILL_PERIODS 20  // a hold shorter than this is reported as motion
 #define STILL_STEP 1e-8   // mm or degrees a period: what kinematics may add to a position
@@ -38,7 +42,7 @@ RTAPI_MP_INT(joints, "number of joints, as the axes of the machine file");
 typedef struct stop_state {
     axg_board board;
     double option[AXG_WIRE_OPTIONS];
-    uint32_t options_seen[AXG_WIRE_OPTIONS];
+    uint8_t options_seen[AXG_WIRE_OPTIONS];
     bool has_begun;
     uint64_t count;                     // servo periods: the number of the sample
     uint64_t period_us;                 // as the thread runs
@@ -68,6 +72,7 @@ typedef struct stop_state {
 static int comp_id;
 static stop_pins* pins;
 static stop_state state;
+static axg_joints map;
 static hal_stream_t samples_out, frames_in;
 
 static uint64_t now_us(void) {
@@ -76,38 +81,23 @@ static uint64_t now_us(void) {
 
 // A distance in mm or degrees, in the unit of the joint's pins.
 static double in_pins(double distance, int joint) {
-    const double unit = state.option[AXG_WIRE_UNIT + joint];
+    const double unit = state.option[AXG_WIRE_UNIT + map.axis[joint]];
     return unit > 0 ? distance / unit : distance;  // before the guard states it: as if it were mm
 }
 
 // --- What comes from the guard ----------------------------------------------------------------
 
 static void begin(void) {
-    bool is_complete = true;
-    for (int i = 0; i < AXG_WIRE_OPTIONS; ++i) {
-        is_complete = is_complete && state.options_seen[i] != 0;
-        state.options_seen[i] = 0;
-    }
-    axg_board_options options;
-    memset(&options, 0, sizeof options);
-    options.period_us = (uint32_t)state.option[AXG_WIRE_PERIOD_US];
-    options.jitter_us = (uint32_t)state.option[AXG_WIRE_JITTER_US];
-    options.reaction_us = (uint32_t)state.option[AXG_WIRE_REACTION_US];
-    options.permit_samples_max = (uint8_t)state.option[AXG_WIRE_SAMPLES_MAX];
-    options.axis_count = (uint8_t)state.option[AXG_WIRE_AXES];
-    options.permit_id = (uint32_t)state.option[AXG_WIRE_PERMIT_ID];
-    options.stop_id = (uint32_t)state.option[AXG_WIRE_STOP_ID];
-    options.hashes_id = (uint32_t)state.option[AXG_WIRE_HASHES_ID];
-    options.cap_kind = AXG_BOARD_CAP_IGNORED;
-    for (int i = 0; i < 4; ++i) {
-        options.hashes[i] = (uint32_t)state.option[AXG_WIRE_HASH + i];
-    }
+    const bool is_complete = memchr(state.options_seen, 0, sizeof state.options_seen) == NULL;
+    memset(state.options_seen, 0, sizeof state.options_seen);
+    const axg_board_options options = axg_options_from(state.option);
     bool brakes = true;
-    for (int i = 0; i < joints; ++i) {
+    for (int i = 0; i < map.axes; ++i) {
+        const bool has_skew = state.option[AXG_WIRE_SKEW + i] > 0;
         brakes = brakes && state.option[AXG_WIRE_STOPPING + i] > 0 &&
-                 state.option[AXG_WIRE_UNIT + i] > 0;
+                 state.option[AXG_WIRE_UNIT + i] > 0 && (has_skew || !axg_is_gantry(&map, i));
     }
-    const bool is_ours = options.period_us == state.period_us && options.axis_count == joints;
+    const bool is_ours = options.period_us == state.period_us && options.axis_count == map.axes;
     state.nonce = (uint32_t)((uint64_t)rtapi_get_time() >> 4) & AXG_BOARD_NONCE_MAX;
     const bool is_up = axg_board_power_up(&state.board, &options, state.nonce, now_us());
     axg_board_moves(&state.board, state.still < STILL_PERIODS, now_us());
@@ -121,9 +111,9 @@ static void begin(void) {
     state.is_jog = false;
     if (!state.has_begun) {
         rtapi_print_msg(RTAPI_MSG_ERR,
-                        "axguard-stop: the machine file has %u axes and a period of %u us (found "
-                        "%d joints, %u us). Make them equal.\n",
-                        options.axis_count, options.period_us, joints, (unsigned)state.period_us);
+                        "axguard-stop: the machine file has %u axes and %u us (found %d, %u us). "
+                        "Make them equal; an axis with two joints needs skew_mm.\n",
+                        options.axis_count, options.period_us, map.axes, (unsigned)state.period_us);
     }
 }
 
@@ -132,10 +122,8 @@ static void take_frame(uint32_t head, uint32_t low, uint32_t high) {
     memset(&frame, 0, sizeof frame);
     frame.id = head >> 16;
     frame.length = (uint8_t)((head >> 8) & 0xFFU);
-    for (int i = 0; i < 4; ++i) {
-        frame.data[i] = (uint8_t)(low >> (8 * i));
-        frame.data[4 + i] = (uint8_t)(high >> (8 * i));
-    }
+    memcpy(&frame.data[0], &low, 4);
+    memcpy(&frame.data[4], &high, 4);
     const axg_board_heard heard = axg_board_frame(&state.board, &frame, now_us());
     if (heard == AXG_BOARD_HEARD_HASH || heard == AXG_BOARD_HEARD_HASH_DIFFERS) {
         state.hashes_wanted |= (uint8_t)(1U << frame.data[0]);
@@ -244,7 +232,7 @@ static void arm(void) {
 static void select_jog(void) {
     const int joint = *pins->jog_joint;
     const bool is_one = joint >= 0 && joint < joints && state.has_begun &&
-                        state.option[AXG_WIRE_JOG_SPEED + joint] > 0;
+                        state.option[AXG_WIRE_JOG_SPEED + map.axis[joint]] > 0;
     const bool is_jog = *pins->jog && is_one && state.tool.step == AXG_TOOL_NONE;
     const bool is_other =
         is_jog && (joint != state.jog_joint || *pins->jog_down != state.jogs_down);
@@ -254,7 +242,7 @@ static void select_jog(void) {
     axg_board_change(&state.board, is_jog, now_us());
     if (state.still >= STILL_PERIODS) {
         state.is_jog = is_jog;
-        state.jog_joint = joint;
+        state.jog_joint = is_one ? joint : 0;
         state.jogs_down = *pins->jog_down;
     }
 }
@@ -292,19 +280,20 @@ static bool read_commands(double wanted[]) {
 }
 
 static bool is_homed(void) {
-    bool all = true;
-    for (int i = 0; i < joints; ++i) {
-        all = all && *pins->homed[i];
+    int count = 0;
+    while (count < joints && *pins->homed[count]) {
+        ++count;
     }
-    return all;
+    return count == joints;
 }
 
 // Each joint by itself, by the deceleration of the machine file: no joint waits for another one,
 // and none turns round.
 static bool ramp(double period_s) {
     bool moves = false;
+    axg_level(&map, state.speed);
     for (int i = 0; i < joints; ++i) {
-        const double less = state.option[AXG_WIRE_STOPPING + i] * period_s;
+        const double less = state.option[AXG_WIRE_STOPPING + map.axis[i]] * period_s;
         const double speed = fabs(state.speed[i]) - less;
         state.speed[i] = speed > 0 ? copysign(speed, state.speed[i]) : 0;
         state.at[i] += state.speed[i] * period_s;
@@ -330,12 +319,12 @@ static bool pass(const double wanted[], double period_s) {
     return moves;
 }
 
-// In a jog one joint moves, one way, within the limits of the machine file, and the others stay.
+// In a jog one axis moves, one way, within the limits of the machine file, and the others stay.
 static bool keeps_jog(const double wanted[], double period_s) {
     bool keeps = true;
     for (int i = 0; i < joints; ++i) {
         const double step = wanted[i] - state.at[i];
-        if (i != state.jog_joint) {
+        if (map.axis[i] != map.axis[state.jog_joint]) {
             keeps = keeps && fabs(step) <= in_pins(ALIGNED, i);
             continue;
         }
@@ -343,33 +332,57 @@ static bool keeps_jog(const double wanted[], double period_s) {
         const double speed = forward > 0 ? forward / period_s : 0;
         const double change = fabs(speed - fabs(state.speed[i])) / period_s;
         keeps = keeps && forward >= -in_pins(ALIGNED, i) &&
-                speed <= ROUNDED * state.option[AXG_WIRE_JOG_SPEED + i] &&
-                change <= ROUNDED * state.option[AXG_WIRE_JOG_ACCELERATION + i];
+                speed <= ROUNDED * state.option[AXG_WIRE_JOG_SPEED + map.axis[i]] &&
+                change <= ROUNDED * state.option[AXG_WIRE_JOG_ACCELERATION + map.axis[i]];
     }
     return keeps;
 }
 
 static bool pass_jog(const double wanted[], double period_s) {
-    const int i = state.jog_joint;
-    const double step = wanted[i] - state.at[i];
-    const double still = in_pins(STILL_STEP, i);
+    const int axis = map.axis[state.jog_joint];
+    const double step = axg_mean_of(&map, wanted, axis) - axg_mean_of(&map, state.at, axis);
+    const double still = in_pins(STILL_STEP, state.jog_joint);
     const bool moves = state.jogs_down ? step < -still : step > still;
     hold();
-    state.speed[i] = moves ? step / period_s : 0;
-    state.at[i] += moves ? step : 0;
+    for (int i = 0; i < joints && moves; ++i) {  // both of a gantry, or neither
+        if (map.axis[i] == axis) {
+            state.speed[i] = (wanted[i] - state.at[i]) / period_s;
+            state.at[i] = wanted[i];
+        }
+    }
     return moves;
 }
 
 static bool is_fast(void) {
-    bool is_moving = false;
-    for (int i = 0; i < joints; ++i) {
-        is_moving = is_moving || state.speed[i] != 0;
+    int count = 0;
+    while (count < joints && state.speed[count] == 0) {
+        ++count;
     }
-    return is_moving;
+    return count < joints;
+}
+
+// Whether two joints of one axis are farther apart than the proof allows, as LinuxCNC commands them
+// or as they were sent. Before both are homed nobody knows.
+static bool is_skewed(void) {
+    double commanded[AXG_WIRE_JOINTS_MAX], at[AXG_WIRE_JOINTS_MAX];
+    for (int i = 0; i < joints; ++i) {
+        commanded[i] = *pins->in[i] - *pins->offset[i];
+        at[i] = state.at[i] - *pins->offset[i];
+    }
+    const double* const skew = &state.option[AXG_WIRE_SKEW];
+    const int first = state.has_at ? axg_skewed_axis(&map, at, skew) : -1;
+    const int axis = first >= 0 ? first : axg_skewed_axis(&map, commanded, skew);
+    const bool was = *pins->skewed;
+    *pins->skewed = axis >= 0 && state.has_begun && is_homed();
+    if (*pins->skewed && !was) {
+        rtapi_print_msg(RTAPI_MSG_ERR, AXG_SKEW_WORDS, map.first[axis], map.second[axis],
+                        axg_skew_of(&map, first >= 0 ? at : commanded, axis), skew[axis]);
+    }
+    return *pins->skewed;
 }
 
 // Whether axes may move: the board's permit, for the tool that LinuxCNC has too. In motion a wrong
-// length is a stop; at rest it withholds the permit until the lengths agree.
+// length or a skew is a stop; at rest it withholds the permit until it is corrected.
 static axg_board_motion may_move(void) {
     const bool differed = state.length.differs;
     const double unit_mm = state.option[AXG_WIRE_LENGTH_UNIT];
@@ -381,11 +394,12 @@ static axg_board_motion may_move(void) {
         rtapi_print_msg(RTAPI_MSG_ERR, AXG_LENGTH_WORDS, (unsigned)state.tool.number, offset_mm,
                         state.length.file_mm, tolerance_mm);
     }
-    if (differs && is_fast()) {
+    const bool skewed = is_skewed();
+    if ((differs || skewed) && is_fast()) {
         axg_board_stop(&state.board, now_us());
     }
     axg_board_motion motion = axg_board_may_move(&state.board, now_us());
-    motion.may_move = motion.may_move && !differs;
+    motion.may_move = motion.may_move && !differs && !skewed;
     return motion;
 }
 
@@ -425,7 +439,7 @@ static void send_sample(void) {
     memset(&says, 0, sizeof says);
     says.mode = state.is_jog ? 3 : (state.still < STILL_PERIODS ? 1 : 0);
     says.jogs_down = state.jogs_down;
-    says.jog_axis = (uint8_t)state.jog_joint;
+    says.jog_axis = (uint8_t)map.axis[state.jog_joint];
     if (axg_tool_is_announced(&state.tool)) {
         says.mode = 2;
     }
@@ -451,9 +465,12 @@ static void send_sample(void) {
             memcpy(&record[7].u, &frame.data[4], 4);
         }
     }
+    double position[AXG_WIRE_JOINTS_MAX];
     for (int i = 0; i < joints; ++i) {
-        *pins->position[i] = state.at[i] - *pins->offset[i];
-        record[AXG_WIRE_SAMPLE_WORDS + i].f = *pins->position[i];
+        *pins->position[i] = position[i] = state.at[i] - *pins->offset[i];
+    }
+    for (int axis = 0; axis < map.axes; ++axis) {
+        record[AXG_WIRE_SAMPLE_WORDS + axis].f = axg_mean_of(&map, position, axis);
     }
     hal_stream_write(&samples_out, record);  // a full stream loses the sample: its number shows it
 }
@@ -538,11 +555,14 @@ static void update(void* unused, long period_ns) {
 // --- Loading ----------------------------------------------------------------------------------
 
 int rtapi_app_main(void) {
-    if (joints < 1 || joints > AXG_WIRE_JOINTS_MAX) {
-        rtapi_print_msg(RTAPI_MSG_ERR, "axguard-stop: joints: found %d, expected 1 to %d\n", joints,
+    if (!axg_joints_from(&map, coordinates, joints)) {
+        rtapi_print_msg(RTAPI_MSG_ERR,
+                        "axguard-stop: expected joints=1 to joints=%d, or coordinates= with a "
+                        "letter for each, at most twice the same\n",
                         AXG_WIRE_JOINTS_MAX);
         return -1;
     }
+    joints = map.count;
     comp_id = hal_init("axguard_stop");
     if (comp_id < 0) {
         return comp_id;
@@ -553,10 +573,9 @@ int rtapi_app_main(void) {
     pins = hal_malloc(sizeof *pins);
     int fault = pins == NULL ? -1 : make_stop_pins(pins, joints, comp_id);
     fault = fault ? fault : hal_export_funct("axguard-stop", update, NULL, 1, 0, comp_id);
-    if (fault == 0) {
-        fault = hal_stream_create(&samples_out, comp_id, AXG_WIRE_SAMPLES_KEY,
-                                  AXG_WIRE_SAMPLES_DEPTH, AXG_WIRE_SAMPLE_TYPES);
-    }
+    fault = fault ? fault
+                  : hal_stream_create(&samples_out, comp_id, AXG_WIRE_SAMPLES_KEY,
+                                      AXG_WIRE_SAMPLES_DEPTH, AXG_WIRE_SAMPLE_TYPES);
     if (fault == 0) {
         fault = hal_stream_create(&frames_in, comp_id, AXG_WIRE_FRAMES_KEY, AXG_WIRE_FRAMES_DEPTH,
                                   AXG_WIRE_FRAME_TYPES);

@@ -10,7 +10,7 @@
 #define AXG_WIRE_SAMPLES_DEPTH 1024
 #define AXG_WIRE_FRAMES_DEPTH 512
 
-// A sample: eight words, then a position of each joint in the unit of its pins. Words: number (low,
+// A sample: eight words, then a position of each axis in the unit of its pins. Words: number (low,
 // high), nonce, mode | flags << 8 | tool << 16, times that a person armed, 1 if a hash follows, its
 // bytes.
 #define AXG_WIRE_SAMPLE_WORDS 8
@@ -30,8 +30,9 @@ enum {
 };
 #define AXG_WIRE_TEXT_BYTES 512
 
-// Options, in the order of axg_board_options. The last four are the first of AXG_WIRE_JOINTS_MAX
-// each: mm or degrees in a unit of the joint's pins; then values in that unit, without jogs 0.
+// Options, in the order of axg_board_options. The last five are the first of AXG_WIRE_JOINTS_MAX
+// each, one an axis: mm or degrees in a unit of its pins; then values in that unit, without jogs
+// or a gantry 0.
 enum {
     AXG_WIRE_PERIOD_US = 0,
     AXG_WIRE_JITTER_US,
@@ -49,7 +50,8 @@ enum {
     AXG_WIRE_STOPPING = AXG_WIRE_UNIT + AXG_WIRE_JOINTS_MAX,
     AXG_WIRE_JOG_SPEED = AXG_WIRE_STOPPING + AXG_WIRE_JOINTS_MAX,
     AXG_WIRE_JOG_ACCELERATION = AXG_WIRE_JOG_SPEED + AXG_WIRE_JOINTS_MAX,
-    AXG_WIRE_OPTIONS = AXG_WIRE_JOG_ACCELERATION + AXG_WIRE_JOINTS_MAX
+    AXG_WIRE_SKEW = AXG_WIRE_JOG_ACCELERATION + AXG_WIRE_JOINTS_MAX,
+    AXG_WIRE_OPTIONS = AXG_WIRE_SKEW + AXG_WIRE_JOINTS_MAX
 };
 
 #endif

@@ -231,6 +231,9 @@ def act(event):
     elif event["do"] == "tool_change":  # in motion, and announced by nobody
         subprocess.run(["halcmd", "unlinkp", "axguard-stop.tool-change"], check=True)
         set_pin("axguard-stop.tool-change", 1)
+    elif event["do"] == "skew":  # of one joint of a gantry
+        subprocess.run(["halcmd", "unlinkp", "axguard-stop.2.offset"], check=True)
+        set_pin("axguard-stop.2.offset", event["value"])
     elif event["do"] == "feed":
         COMMAND.feedrate(event["value"])
 
@@ -279,7 +282,11 @@ def main():
                 "axguard-stop.cause", "axguard-stop.permits", "axguard-stop.last-stop-periods",
                 "axguard-stop.simulation-unheard", "axguard.late", "axguard.samples-lost",
                 "axguard.stops", "axguard-stop.late-periods", "axguard-stop.refusal",
-                "axguard-stop.estop-ok", *STOP_PINS, "axguard.phase")}
+                "axguard-stop.estop-ok", *STOP_PINS, "axguard.phase",
+                "axguard-stop.skewed", "axguard-stop.1.out", "axguard-stop.2.out")}
+        if SCENARIO.get("skew") and RESULT["ended"] == "stopped":
+            RESULT["armed_skewed"] = arm()
+            set_pin("axguard-stop.2.offset", 0)
         if SCENARIO.get("again"):
             RESULT["on_again"] = arm() and switch_on()
     finally:

@@ -8,6 +8,7 @@ import json
 import math
 import pathlib
 import shutil
+import subprocess
 import sys
 import tempfile
 
@@ -105,6 +106,10 @@ def scenarios(source):
         "xyzac_collide": (TIP_COLLIDE, True, {}),
         "xyzbc_clean": (TIP_CLEAN.replace("A", "B"), False, {}),
         "xyzbc_collide": (TIP_COLLIDE.replace("A", "B"), True, {}),
+        "gantry": (SWING, False, {"is_gantry": True}),
+        "gantry_kill": (SWING, True, {"is_gantry": True, "events": kill}),
+        "gantry_skew": (SWING, True, {"is_gantry": True, "skew": True, "again": True, "events": [
+            {"do": "skew", "after_s": 1.5, "value": 0.12}]}),
         "clean_whole": (clean_program(source, None), False, {}),
         **{f"xyzac_demo_{n}": (demo(f"xyzac_switchkins_test_{n}"), True, {}) for n in (1, 2, 3)},
         **{f"xyzac_demo_{n}_raised":
@@ -114,7 +119,8 @@ def scenarios(source):
 
 # At most three minutes; the others run by hand, by name.
 USUAL = ["clean", "collide", "collide_inch", "kill_approach", "late", "estop", "unguarded", "jog",
-         "tool", "tool_collide", "tool_unknown", "tool_length", "tool_length_inch", "xyzac_clean"]
+         "tool", "tool_collide", "tool_unknown", "tool_length", "tool_length_inch", "xyzac_clean",
+         "gantry_kill", "gantry_skew"]
 SAME_MM = 0.5  # between two runs of one collision: three periods of its speed
 
 
@@ -286,7 +292,7 @@ def check(name, is_stopped, said, rows, overruns, judged, facts):
             faults.append(f"{name}: {ramp['from_last_permit']} periods from the last permit")
         if ramp["turned"]:
             faults.append(f"{name}: a joint turned round in the stop")
-    if name.startswith("kill") and said["pins"]["axguard-stop.cause"] != "3":
+    if "kill" in name and said["pins"]["axguard-stop.cause"] != "3":
         faults.append(f"{name}: the stop has another cause than the end of the permit")
     if name in ("xyzac_clean", "xyzbc_clean"):
         worst, count = tip_error(rows, f"{name[:5]}-trt")
@@ -302,8 +308,45 @@ def check(name, is_stopped, said, rows, overruns, judged, facts):
     # A stop of LinuxCNC's own ends the permits, and is none of the guard.
     if name == "estop" and said["pins"]["axguard.phase"] not in ("2", "3"):
         faults.append(f"estop: the guard stopped, or still permits: {said['pins']}")
-    if name in ("collide", "estop") and not said.get("on_again"):
+    if name in ("collide", "estop", "gantry_skew") and not said.get("on_again"):
         faults.append(f"{name}: not armed and switched on again after the stop")
+    return faults
+
+
+def check_record(name, place):
+    """What axguard-hal records is a trace, from which inspect proposes limits for the machine."""
+    answer = subprocess.run(  # a guard that was killed ended its last line anywhere
+        [place.build / "axguard", "inspect", place.folder / "run.log", "--limits", "--lenient",
+         "--machine", place.folder / f"{place.name}.yaml", "--json"], capture_output=True,
+        text=True, check=False)
+    if answer.returncode != 0:
+        return [f"{name}: inspect: {answer.stdout[-500:]}{answer.stderr[-500:]}"]
+    machine = json.loads(answer.stdout)["machine"]
+    measured = machine["limits"]["X"]["acceleration"]["measured"]
+    proposed = machine["proposed_limits"]["X"]["acceleration_mm_s2"]
+    print(f"{name}: X: at most {measured} mm/s2 in {machine['snapshots']} samples: {proposed}")
+    if machine["snapshots"] < 1000 or not 1500 < measured < proposed:
+        return [f"{name}: the record proposes {proposed} mm/s2 for {measured}"]
+    return []
+
+
+def check_gantry(name, said):
+    """Both joints of Y go together, in a stop too; one that is too far off stops, by its name."""
+    pins = said.get("pins", {})
+    faults = [] if pins.get("axguard-stop.1.out") == pins.get("axguard-stop.2.out") else [
+        f"{name}: the joints of Y rest apart: {pins}"]
+    wanted = "TRUE" if name == "gantry_skew" else "FALSE"
+    if pins.get("axguard-stop.skewed") != wanted:
+        faults.append(f"{name}: skewed: found {pins.get('axguard-stop.skewed')}, expected {wanted}")
+    if name != "gantry_skew":
+        return faults
+    if pins.get("axguard-stop.cause") != str(CAUSE_PERSON):
+        faults.append(f"{name}: the stop has another cause than the skew")
+    if said.get("armed_skewed") is not False or not said.get("on_again"):
+        faults.append(f"{name}: armed while skewed, or not armed afterwards")
+    if "joints 1 and 2 of one axis are 0.1200 apart, skew_mm allows 0.1000" not in "".join(
+            said.get("errors", [])):
+        faults.append(f"{name}: the operator does not see it: {said.get('errors')}")
     return faults
 
 
@@ -350,6 +393,8 @@ def run_all(given):
         mine += check_length(said, place.unit_mm) if name.startswith("tool_length") else []
         if name == "collide":
             mine += check_words(name, said, output, list(place.folder.glob("linuxcnc-*.axgbox")))
+        mine += check_record(name, place) if name == "gantry_kill" else []
+        mine += check_gantry(name, said) if name.startswith("gantry") else []
         facts_of[name] = {"samples": len(rows), "overruns": overruns, "ended": said.get("ended"),
                           "contacts": sum(stop["reason"] != "tool" for stop in judged["stops"]),
                           "stops": facts, "resumed": said.get("resumed", 0),

@@ -67,8 +67,10 @@ class Place:
         self.meshes = root / "config/machines"
         self.user = pwd.getpwnam("nobody") if os.geteuid() == 0 else pwd.getpwuid(os.geteuid())
 
-    def prepare(self, program, guarded, simulation_wait_us, is_inch=False, **scenario):
+    def prepare(self, program, guarded, simulation_wait_us, is_inch=False, is_gantry=False,
+                **scenario):
         self.unit_mm = INCH_MM if is_inch else 1
+        self.joints = [0, 1, 3, 4, 5] if is_gantry else [0, 1, 2, 3, 4]  # of the recorded axes
         shutil.rmtree(self.folder, ignore_errors=True)
         self.folder.mkdir(parents=True)
         shutil.copy(self.build / "axguard-hal", self.folder)
@@ -84,10 +86,34 @@ class Place:
         (self.folder / "after.ngc").write_text(scenario.pop("after", "M2\n"), encoding="ascii")
         scenario.update(guarded=guarded)
         (self.folder / "scenario.json").write_text(json.dumps(scenario), encoding="utf-8")
+        if is_gantry:
+            self.add_second_y()
         self.write_ini()
         self.write_hal(guarded, simulation_wait_us)
         for path in (self.folder, *self.folder.rglob("*")):
             os.chown(path, self.user.pw_uid, self.user.pw_gid)
+
+    def add_second_y(self):
+        """Joints 1 and 2 move Y."""
+        def shifted(match):
+            return match[1] + str(int(match[2]) + (int(match[2]) > 1))
+
+        def rewrite(suffix, *changes):
+            file = self.folder / f"{self.name}.{suffix}"
+            text = file.read_text(encoding="utf-8")
+            for pattern, change in changes:
+                text, count = re.subn(pattern, change, text, flags=re.MULTILINE)
+                assert count, pattern
+            file.write_text(text, encoding="utf-8")
+
+        rewrite("ini", (r"(\[JOINT_)(\d)", shifted), ("XYZAC", "XYYZAC"),
+                ("JOINTS = 5", "JOINTS = 6"),
+                (r"^\[JOINT_1\]([^[]*)", r"[JOINT_1]\1[JOINT_2]\1"))
+        index = r"((?:joint\.|axguard-stop\.|\b(?:cmd|out|offset|homed|enable)-))"
+        rewrite("hal", (index + r"(\d)\b", shifted),
+                (f"^net .*{index}1.*\n", lambda match: match[0] + re.sub(index + "1", r"\g<1>2",
+                                                                         match[0])))
+        rewrite("yaml", ("  Y: {kind: linear, ", "  Y: {kind: linear, skew_mm: 0.1, "))
 
     def write_ini(self):
         ini = self.folder / f"{self.name}.ini"
@@ -116,7 +142,10 @@ class Place:
         text = text.replace("loadrt axguard_stop joints=5",
                             f"loadrt sampler depth=16000 cfg={COLUMNS}\n"
                             "loadrt axguard_stop joints=5")
+        if len(self.joints) < self.joints[-1] + 1:
+            text = text.replace("joints=5", "coordinates=XYYZAC")
         text = text.replace("loadusr -W axguard-hal", f"loadusr -W {self.folder}/axguard-hal")
+        text = text.replace("--simulation ", f"--simulation --record {self.folder}/run.log ")
         if simulation_wait_us == 0:
             text = text.replace("--simulation ", "")
         text = re.sub(r"(simulation-wait-us) \d+", rf"\1 {simulation_wait_us}", text)
@@ -133,9 +162,9 @@ class Place:
             text += ("setp and2.0.in1 1\n"
                      "net tool-loop iocontrol.0.tool-change => iocontrol.0.tool-changed\n")
         else:
-            for joint in range(5):
+            for column, joint in enumerate(self.joints):
                 text += (f"net position-{joint} axguard-stop.{joint}.position => "
-                         f"sampler.0.pin.{joint + 1}\n")
+                         f"sampler.0.pin.{column + 1}\n")
         text += ("net number axguard-stop.sample => sampler.0.pin.0\n"
                  "net permit axguard-stop.permit-ok => sampler.0.pin.6\n"
                  + ("net stopping axguard-stop.stopping => sampler.0.pin.7\n" if guarded else
