@@ -20,8 +20,12 @@ namespace {
 constexpr std::size_t kTriedPairs = 512;  // touching pairs of triangles looked at, a pose
 constexpr std::size_t kRemembered = 16;   // pairs that proved a box lately
 constexpr double kFarthestMm = 1000;      // no pair is proven farther apart
-// Of the least clearance found: what is to be proven, as each quarter of the queries is used.
+// Of the least clearance found: what is to be proven, as each quarter of the queries is used; and
+// no less than this. A gap just above kContactMm leaves each box only the rest of it for its
+// motion, however long the travel: the last quarter proves less than kContactMm.
 constexpr std::array<double, 4> kShares{0.9, 0.5, 0.2, 0};
+constexpr std::array<double, 4> kLeastMm{kContactMm, kContactMm, kContactMm, kContactMm / 4};
+constexpr std::uint64_t kShownEach = 64;  // queries
 
 enum class Place : std::uint8_t { unknown, near, apart };
 
@@ -90,7 +94,10 @@ class PairJudge {
     QueryResult ask(Query query) {
         QueryResult result;
         surfaces_.engine.run({&query, 1}, {&result, 1});
-        ++out_.queries;
+        if (++out_.queries % kShownEach == 0 && effort_.progress) {
+            effort_.progress(
+                std::min(1.0, static_cast<double>(out_.queries) / std::max(effort_.queries, 1U)));
+        }
         return result;
     }
     static bool is_far(const QueryResult& result) {
@@ -168,10 +175,12 @@ class PairJudge {
         return true;
     }
 
-    /// The share of the least clearance found that the queries left may prove.
-    [[nodiscard]] double share() const {
-        const std::uint64_t quarter = 4 * out_.queries / std::max(effort_.queries, 1U);
-        return kShares[std::min<std::uint64_t>(quarter, kShares.size() - 1)];
+    /// What the queries left may prove.
+    /// @param least_mm  the least clearance found
+    [[nodiscard]] double provable_mm(double least_mm) const {
+        const std::uint64_t quarter = std::min<std::uint64_t>(
+            4 * out_.queries / std::max(effort_.queries, 1U), kShares.size() - 1);
+        return std::max(kLeastMm[quarter], kShares[quarter] * least_mm);
     }
 
     /// Proves a distance everywhere: most of the least clearance found, and less where that takes
@@ -190,16 +199,20 @@ class PairJudge {
             if (is_far(ask(query_of(task_, pair, wanted_mm + motion.total_mm)))) {
                 continue;
             }
-            Query query = query_of(task_, pair, least_mm);
-            query.kind = QueryKind::clearance;
-            least_mm = std::min(least_mm, ask(query).clearance_mm);
-            wanted_mm = std::min(wanted_mm, std::max(kContactMm, share() * least_mm));
+            const double before_mm = wanted_mm;
+            if (motion.total_mm <= least_mm) {  // else a smaller part has to be asked
+                Query query = query_of(task_, pair, least_mm);
+                query.kind = QueryKind::clearance;
+                least_mm = std::min(least_mm, ask(query).clearance_mm);
+                wanted_mm = std::min(wanted_mm, provable_mm(least_mm));
+            }
             if (least_mm <= kContactMm) {
                 note(box.centre);
                 return false;
             }
-            if (!is_far(ask(query_of(task_, pair, wanted_mm + motion.total_mm))) &&
-                !cut(open, box, motion.widest_axis)) {
+            const bool is_proven = wanted_mm < before_mm &&
+                                   is_far(ask(query_of(task_, pair, wanted_mm + motion.total_mm)));
+            if (!is_proven && !cut(open, box, motion.widest_axis)) {
                 return false;
             }
         }
@@ -280,6 +293,12 @@ std::optional<std::vector<PairOverTravel>> judge_over_travel(const LoadedMachine
     machine.travel = {};
     machine.pose_errors = find_pose_errors(machine, loaded.meshes);
     std::vector<PairOverTravel> out(machine.pairs.size());
+    std::uint32_t done = 0;
+    const std::uint32_t count = stop_tasks(machine);
+    ExclusionEffort of_pair = effort;
+    if (effort.progress) {
+        of_pair.progress = [&](double share) { effort.progress((done + share) / count); };
+    }
     for (std::uint32_t i = 0; i < machine.pairs.size(); ++i) {
         const bool has_its_tool = has_tool(machine, machine.pairs[i]);
         for (std::uint32_t k = 0; k < tasks_of(machine, machine.pairs[i]); ++k) {
@@ -289,8 +308,9 @@ std::optional<std::vector<PairOverTravel>> judge_over_travel(const LoadedMachine
             PairOverTravel one;
             if (has_usable_triangles(*surfaces->meshes[task.mesh_a]) &&
                 has_usable_triangles(*surfaces->meshes[task.mesh_b])) {
-                one = PairJudge(machine, *surfaces, task, effort).judge();
+                one = PairJudge(machine, *surfaces, task, of_pair).judge();
             }
+            ++done;
             one.near.tool = one.apart.tool = tool;
             add(one, k == 0, out[i]);
         }

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -21,7 +22,7 @@ inline constexpr double kContactMm = 0.1;
 
 enum class TravelVerdict : std::uint8_t {
     undecided = 0,  // within the effort
-    never_near,     // farther apart than kContactMm everywhere, neither inside the other: proven
+    never_near,     // farther apart than apart_mm everywhere, neither inside the other: proven
     always_near,    // within kContactMm, or one inside the other, everywhere: proven
     both,           // near at one place and apart at another: a witness of each
 };
@@ -47,8 +48,9 @@ struct PairOverTravel {
 };
 
 struct ExclusionEffort {
-    std::uint32_t poses = 256;          // looked at first
-    std::uint32_t queries = 1U << 16U;  // about a pair with each of its tools
+    std::uint32_t poses = 256;                     // looked at first
+    std::uint32_t queries = 1U << 16U;             // about a pair with each of its tools
+    std::function<void(double share)> progress{};  // called now and then; 0 to 1 of all pairs
 };
 
 /// Judges pairs of bodies with surfaces, on whole surfaces. results[i] belongs to pairs[i]; empty:

@@ -10,6 +10,7 @@
 #include "config/text/quote_text.hpp"
 #include "core/certificate/joint_path.hpp"
 #include "firmware_if/cli/limit_text.hpp"
+#include "firmware_if/cli/progress.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
 #include "hil_replay/check/check_report.hpp"
 
@@ -83,8 +84,14 @@ void report_exclusions(CheckReport& report) {
     for (const Exclusion& one : machine.exclusions) {
         pairs.push_back({.a = one.a, .b = one.b});
     }
+    Progress progress;
+    const auto show = [&progress](double share) {
+        if (progress.is_due()) {
+            progress.show(share, "proving exclusions");
+        }
+    };
     std::optional<std::vector<PairOverTravel>> found =
-        judge_over_travel(report.loaded, std::move(pairs));
+        judge_over_travel(report.loaded, std::move(pairs), {.progress = show});
     if (!found) {
         report.warnings.emplace_back(kNoMemoryForProofs);
         return;

@@ -23,6 +23,7 @@
 #include "config/text/yaml_tree.hpp"
 #include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/progress.hpp"
 #include "firmware_if/cli/whole_file.hpp"
 #include "firmware_if/setup/exclusion_proof.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
@@ -197,7 +198,13 @@ bool find_permanent(const std::string& text, const std::string& mesh_root,
         return false;
     }
     const std::vector<Pair>& pairs = loaded.machine.pairs;
-    const auto found = judge_over_travel(loaded, pairs);
+    Progress progress;
+    const auto show = [&progress](double share) {
+        if (progress.is_due()) {
+            progress.show(share, "proving exclusions");
+        }
+    };
+    const auto found = judge_over_travel(loaded, pairs, {.progress = show});
     if (!found) {
         fmt::print(stderr, "{}\n", kNoLaneSet);
         return false;

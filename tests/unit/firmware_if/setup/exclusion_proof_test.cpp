@@ -5,7 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "core/base/sincos.hpp"
 #include "core/mesh/shape.hpp"
@@ -74,6 +76,24 @@ TEST_F(OverTravel, AGapIsFoundOnBothSidesOfContact) {
     EXPECT_EQ(found.verdict, TravelVerdict::never_near);
     EXPECT_GE(found.apart_mm, kContactMm);
     EXPECT_LE(found.apart_mm, 0.15);
+}
+
+// A hundredth of a millimetre above contact, along a metre: boxes that prove 0.1 mm would be as
+// short as that hundredth.
+TEST_F(OverTravel, ASmallGapAlongALongTravelIsProven) {
+    loaded_.machine.axes[0].min = -500;
+    loaded_.machine.axes[0].max = 500;
+    mesh(kRail) = box({-700, -10, -20}, {700, 10, 0});
+    mesh(kCarriage) = moved(mesh(kCarriage), {0, 0, 0.11F});
+    std::vector<double> shares;
+    const PairOverTravel found =
+        judge(kRail, kCarriage, {.progress = [&](double share) { shares.push_back(share); }});
+    EXPECT_EQ(found.verdict, TravelVerdict::never_near);
+    EXPECT_GE(found.apart_mm, kContactMm / 4);
+    EXPECT_LT(found.apart_mm, 0.11);
+    ASSERT_FALSE(shares.empty());
+    EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+    EXPECT_LE(shares.back(), 1);
 }
 
 // A block that the carriage meets in the last 0.1 mm of the overrun: no sample of the travel sees
