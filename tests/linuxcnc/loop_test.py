@@ -325,7 +325,7 @@ def check_record(name, place):
     measured = machine["limits"]["X"]["acceleration"]["measured"]
     proposed = machine["proposed_limits"]["X"]["acceleration_mm_s2"]
     print(f"{name}: X: at most {measured} mm/s2 in {machine['snapshots']} samples: {proposed}")
-    if machine["snapshots"] < 1000 or not 1500 < measured < proposed:
+    if machine["snapshots"] < 1000 or not 500 < measured < proposed:
         return [f"{name}: the record proposes {proposed} mm/s2 for {measured}"]
     return []
 

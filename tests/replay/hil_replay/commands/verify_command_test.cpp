@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
 
 #include "firmware_if/cli/exit_codes.hpp"
 #include "tests/support/json_value.hpp"
@@ -47,6 +48,30 @@ TEST(VerifyCommand, AVerdictIsThatOfSimulateAndReplay) {
         EXPECT_EQ(run.at("permits"), replay.at("permits"));
         EXPECT_EQ(run.at("stop_count"), replay.at("stop_count"));
     }
+}
+
+// Heads that tilt: with the tip held, and into the table.
+TEST(VerifyCommand, ASpindleThatTiltsIsProvenAndStopped) {
+    Workshop shop;
+    const std::string begin = "T1 M6\nG21 G90 G94\nG43 H1\n";
+    (void)shop.write("tip.ngc", begin +
+                                    "G0 X20 Z40\nM428\nG1 B-10 C30 F3000\nG1 X-20 Z30\n"
+                                    "G1 B20 C-30\nM429\nM2\n");
+    (void)shop.write("down.ngc", begin + "G0 Z60\nG0 B40 C30\nG0 Z-250\nM2\n");
+    for (const auto& [name, offset] : {std::pair{"spindle-tilting", "G54 Z-200"},
+                                       std::pair{"table-spindle-tilting", "G54 Z-150"}}) {
+        const std::string options = " --json --work-offset \"" + std::string(offset) + '"';
+        const std::string verify =
+            "verify " + source_file("config/machines/" + std::string(name) + ".yaml") + ' ';
+        EXPECT_EQ(shop.run(verify + "tip.ngc --override 30..150" + options), kExitClean)
+            << name << shop.out << shop.err;
+        EXPECT_EQ(Json::parse(shop.out).at("programs").at(0).at("runs").size(), 3U) << name;
+    }
+    const std::string verify =
+        "verify " + source_file("config/machines/table-spindle-tilting.yaml") + ' ';
+    EXPECT_EQ(shop.run(verify + "down.ngc --json --work-offset \"G54 Z-150\""), kExitCollision);
+    const Json run = Json::parse(shop.out).at("programs").at(0).at("runs").at(0);
+    EXPECT_EQ(run.at("stops").at(0).at("line"), 6) << run;
 }
 
 TEST(VerifyCommand, AnOverrideChangesFeedsAndNotRapids) {
