@@ -101,14 +101,15 @@ void read_quick_stops(MapReader& reader, FaultList& faults, std::vector<std::uin
 }
 
 /// Default: the transmit objects of node 1, one for each frame.
-void default_axis_ids(MapReader& reader, std::size_t count, CanLayout& can) {
+void default_axis_ids(MapReader& reader, std::size_t count, std::size_t axis_count,
+                      CanLayout& can) {
     constexpr std::array<std::uint32_t, 4> kObjects{0x181, 0x281, 0x381, 0x481};
     can.axis_ids.assign(kObjects.begin(), kObjects.begin() + std::min(count, kObjects.size()));
     if (count > kObjects.size()) {
-        reader.report(
-            "ids", "no axis ids",
-            std::to_string(count) +
-                " of them under can.ids.axes; the axes of this machine need that many frames");
+        reader.report("ids", "no axis ids",
+                      "can.format: fd, whose frame has room for 13 axes, or " +
+                          std::to_string(count) + " identifiers under can.ids.axes; " +
+                          std::to_string(axis_count) + " axes need that many frames");
     }
 }
 
@@ -166,7 +167,7 @@ void read_frame_ids(MapReader& reader, MachineDraft& draft) {
     }
     can.axis_ids.clear();
     if (!axes_written) {
-        default_axis_ids(reader, frames, can);
+        default_axis_ids(reader, frames, draft.machine.axes.size(), can);
     }
     if (ids != nullptr) {
         read_single_ids(*ids, frames, draft);

@@ -27,7 +27,8 @@ constexpr std::string_view kAxisLetters = "XYZABCUVW";
 constexpr double kPeriodNsMin = 50e3, kPeriodNsMax = 100e6;  // what can.sample_us can be
 constexpr std::uint32_t kIncludesMax = 64;  // an include that includes itself ends here
 constexpr std::size_t kIncludeBytesMax = 1U << 20U;
-
+constexpr auto kLeast = [](double a, double b) { return std::min(a, b); };
+constexpr auto kMost = [](double a, double b) { return std::max(a, b); };
 /// Kinematics whose joints are slides and turntables, with the default letters of their joints
 /// (without `coordinates=`). Only with trivkins are the axes the joints.
 struct Kinematics {
@@ -300,15 +301,6 @@ class Reader {
         }
     }
 
-    /// Whether the planner limits jerk: only that of LinuxCNC 2.10, and only where it is told to.
-    [[nodiscard]] bool limits_jerk() const {
-        const Value* const planner = find("TRAJ", "PLANNER_TYPE");
-        const Value* const most = find("TRAJ", "MAX_LINEAR_JERK");
-        const double least = 1;  // below it LinuxCNC goes back to planner 0
-        return planner != nullptr && without_comment(planner->text) == "1" &&
-               (most == nullptr || number_of(without_comment(most->text)).value_or(0) >= least);
-    }
-
     /// Reads the period of the thread that moves the axes and sends the samples.
     void read_period() {
         const Value* value = find("EMCMOT", "SERVO_PERIOD");
@@ -332,13 +324,17 @@ class Reader {
         axis.follows_tip = !is_trivial_;
         scale_ = axis.is_rotary ? 1 : linear_;
         if (is_trivial_) {
-            take(std::string("AXIS_") + letter, axis);
+            take(std::string("AXIS_") + letter, axis, axis, kLeast);
         }
+        IniAxis joints;  // a gantry may do what either of its joints may
         for (std::size_t joint = 0; joint < joints_.size(); ++joint) {
             if (joints_[joint] == letter) {
-                take("JOINT_" + std::to_string(joint), axis);
+                take("JOINT_" + std::to_string(joint), axis, joints, kMost);
             }
         }
+        axis.is_gantry = std::count(joints_.begin(), joints_.end(), letter) > 1;
+        combine(axis.speed, joints.speed, kLeast);
+        combine(axis.acceleration, joints.acceleration, kLeast);
         const Value* wrapped = find(std::string("AXIS_") + letter, "WRAPPED_ROTARY");
         const bool is_wrapped = wrapped != nullptr && is_switched_on(wrapped->text);
         const bool has_end = (axis.min && *axis.min > -kTurnsDeg) ||  //
@@ -498,7 +494,13 @@ class Reader {
                                    : fault_text("invalid value", quoted(value->text, 40), wanted)));
     }
 
-    /// In mm or degrees; the tighter of two, by `pick`.
+    template <class Pick>
+    static void combine(std::optional<double>& kept, const std::optional<double>& other,
+                        Pick pick) {
+        kept = kept && other ? pick(*kept, *other) : kept ? kept : other;
+    }
+
+    /// In mm or degrees; of two, by `pick`.
     template <class Pick>
     void number(const std::string& section, const char* key, bool is_size,
                 std::optional<double>& kept, Pick pick, double limit = kNoLimit) {
@@ -512,7 +514,7 @@ class Reader {
         if (!read || (is_size && !(*read > 0))) {
             fault(section, key, value, is_size ? "a number above 0" : "a number");
         } else if (std::abs(*read * scale_) < limit) {
-            kept = kept ? pick(*kept, *read * scale_) : *read * scale_;
+            combine(kept, std::optional(*read * scale_), pick);
         }
     }
 
@@ -553,18 +555,18 @@ class Reader {
         }
     }
 
-    void take(const std::string& section, IniAxis& axis) {
-        const auto least = [](double a, double b) { return std::min(a, b); };
-        const auto most = [](double a, double b) { return std::max(a, b); };
+    /// @param sizes  whose speed and acceleration are combined, by `pick`
+    template <class Pick>
+    void take(const std::string& section, IniAxis& axis, IniAxis& sizes, Pick pick) {
         check_type(section, axis);
         const double limit = axis.is_rotary ? kNoLimit : kLinearMm;
-        number(section, "MIN_LIMIT", false, axis.min, most, limit);
-        number(section, "MAX_LIMIT", false, axis.max, least, limit);
-        number(section, "MAX_VELOCITY", true, axis.speed, least);
-        number(section, "MAX_ACCELERATION", true, axis.acceleration, least);
-        if (limits_jerk()) {
-            number(section, "MAX_JERK", true, axis.jerk, least);
-        }
+        number(section, "MIN_LIMIT", false, axis.min, kMost, limit);
+        number(section, "MAX_LIMIT", false, axis.max, kLeast, limit);
+        std::optional<double> acceleration;
+        number(section, "MAX_VELOCITY", true, sizes.speed, pick);
+        number(section, "MAX_ACCELERATION", true, acceleration, pick);
+        combine(sizes.acceleration, acceleration, pick);
+        combine(axis.braking, acceleration, kLeast);
         const bool is_empty = axis.min && axis.max && !(*axis.min < *axis.max);
         const Value* const low = find(section, "MIN_LIMIT");
         const Value* const high = find(section, "MAX_LIMIT");

@@ -15,15 +15,18 @@
 namespace axg {
 
 /// One axis, from its joints and, where joints and axes are the same (trivkins), from [AXIS_L]: of
-/// several limits the tightest. A value that the file does not state is empty.
+/// several limits the tightest, but of the two joints of a gantry the larger speed and
+/// acceleration. A value that the file does not state is empty.
 struct IniAxis {
     std::string name = "X";     // a letter; of a joint of a URDF file also J1, J2...
     bool is_rotary = false;     // A B C
     bool is_unlimited = false;  // WRAPPED_ROTARY, or a rotary axis without limits within ten turns
     /// Kinematics for the tip: LinuxCNC limits the tip, and the speed of no joint.
     bool follows_tip = false;
-    std::optional<double> min, max;                   // mm or degrees
-    std::optional<double> speed, acceleration, jerk;  // a second
+    bool is_gantry = false;                     // two joints move it
+    std::optional<double> min, max;             // mm or degrees
+    std::optional<double> speed, acceleration;  // a second
+    std::optional<double> braking;              // the acceleration of its slowest joint
 };
 
 /// A key of the section `program` of a machine file, and where the INI states it.

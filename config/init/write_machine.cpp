@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <string_view>
 
 #include "config/text/quote_text.hpp"
@@ -122,10 +123,17 @@ constexpr double kOverIni = 2;
 constexpr const char* kOverIniHead =
     R"(# LinuxCNC exceeds the limits of its INI file where moves blend, so acceleration_... is twice
 # MAX_ACCELERATION; with kinematics for the tip, speed_... is also twice MAX_VELOCITY. Twice is
-# guessed, and LinuxCNC 2.10 goes beyond it: record the bus while programs run, and replace it by
-# what axguard inspect RECORDING --machine THIS-FILE --limits proposes. If a drive cannot do twice,
+# guessed, and LinuxCNC 2.10 goes beyond it. Measure it: run programs in the air with
+#   axguard-hal ... --record run.log, then axguard inspect run.log --machine THIS-FILE --limits
+# and paste the lines that it prints, with what they rest on. If a drive cannot do twice,
 # halve the values of the INI file instead. stopping_... is MAX_ACCELERATION, by which LinuxCNC
-# brakes: state less if a drive with the heaviest workpiece does not keep it.
+# brakes: state less if a drive with the heaviest workpiece does not keep it. jerk_...: none, for
+# LinuxCNC limits no jerk of an axis: PLANNER_TYPE = 1 limits the path's, and G64 R0 ends that.
+)";
+constexpr const char* kGantryHead =
+    R"(# skew_mm: so far two joints of one axis may be apart, at least twice following_error_mm. The
+# proof allows for it, and axguard_stop, loaded with coordinates= of KINEMATICS, gives no permit
+# beyond it.
 )";
 
 /// The guessed deceleration of a stop, with its price: so much longer is the stop from full speed
@@ -141,15 +149,15 @@ std::string stopping_guess(const IniAxis& axis, double speed, double stopping) {
 }
 
 /// Travel, speed and acceleration from the control's INI file. The file states no stop, only full
-/// acceleration; without MAX_JERK, or with planner 0, LinuxCNC limits no jerk.
-/// @param limits_jerk  whether the file would state one
-std::string known_axis_text(const IniAxis& axis, bool limits_jerk) {
+/// acceleration.
+/// @param has_no_jerk  the control limits none
+std::string known_axis_text(const IniAxis& axis, bool has_no_jerk) {
     const char* const unit = axis.is_rotary ? "deg" : "mm";
     const double full = axis.acceleration.value_or(axis.is_rotary ? 500 : 1000);
     const double acceleration = full * (axis.acceleration ? kOverIni : 1);
     const double speed = axis.speed.value_or(axis.is_rotary ? 90 : 10000.0 / 60) *
                          (axis.speed && axis.follows_tip ? kOverIni : 1);
-    const double stopping = axis.acceleration.value_or(0.8 * full);
+    const double stopping = axis.braking.value_or(axis.acceleration.value_or(0.8 * full));
     std::string guesses =
         stopping_guess(axis, speed, stopping) + ", position_error, following_error";
     std::string travel = "unlimited";
@@ -162,14 +170,17 @@ std::string known_axis_text(const IniAxis& axis, bool limits_jerk) {
     }
     guesses += axis.speed ? "" : ", speed";
     guesses += ", acceleration";
-    guesses += limits_jerk ? "" : ", jerk";
-    const std::string jerk = axis.jerk ? fmt::format("{:.9g}", *axis.jerk) : "none";
+    guesses += has_no_jerk ? "" : ", jerk";
+    guesses += !axis.is_gantry  ? ""
+               : axis.is_rotary ? "; axguard_stop takes no second joint of a rotary axis"
+                                : ", skew";
     return fmt::format(
         "  {}: {{kind: {}, travel_{}: {}, speed_{}: {:.9g}, acceleration_{}_s2: {:.9g}, "
-        "jerk_{}_s3: {}, stopping_{}_s2: {:.9g}, {}}}  {}: {}\n",
+        "jerk_{}_s3: none, stopping_{}_s2: {:.9g}, {}{}}}  {}: {}\n",
         axis.name, axis.is_rotary ? "rotary" : "linear", unit, travel,
         axis.is_rotary ? "deg_s" : "mm_min", speed * (axis.is_rotary ? 1 : 60), unit, acceleration,
-        unit, jerk, unit, stopping, errors_text(axis.is_rotary), kGuessMark, guesses);
+        unit, unit, stopping, axis.is_gantry && !axis.is_rotary ? "skew_mm: 0.1, " : "",
+        errors_text(axis.is_rotary), kGuessMark, guesses);
 }
 
 /// An axis of the file, with its place on the bus.
@@ -195,6 +206,10 @@ std::string axes_text(const std::vector<RoleGuess>& roles, const IniAxes& ini) {
     const std::vector<IniAxis>& known = ini.axes;
     std::string text = kAxesHead;
     text.insert(text.rfind("axes:"), known.empty() || !ini.exceeds_limits ? "" : kOverIniHead);
+    const bool has_gantry = std::any_of(known.begin(), known.end(), [](const IniAxis& axis) {
+        return axis.is_gantry && !axis.is_rotary;
+    });
+    text.insert(text.rfind("axes:"), has_gantry ? kGantryHead : "");
     int slot = 0;
     for (const std::string& axis : axis_names(known)) {
         const bool used = std::any_of(roles.begin(), roles.end(),
@@ -473,9 +488,14 @@ std::string period_text(std::int64_t period_ns) {
     return fmt::format("  sample_us: {}  # SERVO_PERIOD is {} ns{}\n", sample_us, period_ns, rest);
 }
 
-/// Empty where the format [classical] can carry each tool's number.
-std::string format_text(const std::vector<TableTool>& tools) {
+/// Empty where the format [classical] can carry each tool's number, and has an identifier for each
+/// frame of axes.
+std::string format_text(const std::vector<TableTool>& tools, std::size_t axis_count) {
     constexpr std::uint32_t kClassicalMost = 255;
+    constexpr std::size_t kClassicalAxes = 7;
+    if (axis_count > kClassicalAxes) {
+        return fmt::format("  format: fd  # one frame has room for {} axes\n", axis_count);
+    }
     const auto large = std::find_if(tools.begin(), tools.end(), [](const TableTool& tool) {
         return tool.number > kClassicalMost;
     });
@@ -510,7 +530,12 @@ std::string machine_file_text(const std::string& name, const std::vector<Surveye
     text +=
         fmt::format("\n# The CAN frames are axguard's own{}; format: describes others.\ncan:\n{}",
                     period_ns == 0 ? ", 1000 a second" : "", period_text(period_ns));
-    text += format_text(ini.tools.tools);
+    std::set<std::string> axes;
+    for (const RoleGuess& role : roles) {
+        axes.insert(role.axis);
+    }
+    axes.erase("");
+    text += format_text(ini.tools.tools, axes.size());
     text +=
         "  permit: 2  # version; board.md is what a board must do\n"
         "  hashes: required  # the board has to send the hashes that axguard check prints\n";

@@ -191,6 +191,29 @@ TEST(MachineFaultsCan, TooFewFramesAreRefused) {
               "each frame of axis positions, such as [0x181, 0x281, 0x381]).\n");
 }
 
+// Two axes a classical frame, less one for the status, and four identifiers by default.
+TEST(MachineFaultsCan, MoreThanSevenAxesAreToldTheFormatThatHasRoom) {
+    std::string text = with(kSmallMachine, "axes: [0x181, 0x281], ", "");
+    text = with(text, "  data_ids: [0x0181, 641]\n", "");
+    const auto with_axes = [&text](const std::string& letters) {
+        std::string all = text;
+        for (const char letter : letters) {
+            all.insert(all.find("  A: {"), std::string("  ") + letter +
+                                               ": {kind: linear, travel_mm: [0, 9], speed_mm_min: "
+                                               "9, acceleration_mm_s2: 9, jerk_mm_s3: none, "
+                                               "stopping_mm_s2: 9}\n");
+        }
+        return all;
+    };
+    EXPECT_EQ(faults_of(with_axes("YZUV")).find("can.ids"), std::string::npos);
+    EXPECT_NE(faults_of(with_axes("YZUVW"))
+                  .find("can.ids: invalid value (found no axis ids, expected can.format: fd, whose "
+                        "frame has room for 13 axes, or 5 identifiers under can.ids.axes). 8 axes "
+                        "need that many frames."),
+              std::string::npos)
+        << faults_of(with_axes("YZUVW"));
+}
+
 TEST(MachineFaultsCan, TooManyFramesAreRefused) {
     EXPECT_EQ(faults_of(with(kSmallMachine, "axes: [0x181, 0x281]", "axes: [0x181, 0x281, 0x381]")),
               "m:31: can.ids.axes: invalid value (found a list of 3, expected a list of 2, one for "

@@ -6,6 +6,10 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <string>
+#include <vector>
+
+#include "config/init/write_machine.hpp"
 
 namespace axg {
 namespace {
@@ -72,28 +76,36 @@ TEST(LinuxcncIni, AxesHaveTheTighterLimitsInMmAndDegrees) {
     EXPECT_DOUBLE_EQ(x.max.value(), 12.0 * 25.4) << "the joint's is tighter";
     EXPECT_DOUBLE_EQ(x.speed.value(), 10 * 25.4);
     EXPECT_DOUBLE_EQ(x.acceleration.value(), 20 * 25.4);
-    EXPECT_FALSE(x.jerk);
     const IniAxis& y = ini.axes[1];
     EXPECT_FALSE(y.min || y.max || y.speed || y.acceleration) << "nothing is stated";
     EXPECT_FALSE(y.is_unlimited) << "a linear axis ends somewhere";
     EXPECT_DOUBLE_EQ(ini.axes[2].max.value(), 0.5 * 25.4);
     EXPECT_DOUBLE_EQ(ini.axes[2].speed.value(), 5 * 25.4);
-    EXPECT_DOUBLE_EQ(ini.axes[2].jerk.value(), 100 * 25.4);
     EXPECT_DOUBLE_EQ(ini.axes[3].speed.value(), 360) << "degrees in either unit; the first counts";
     EXPECT_FALSE(ini.axes[3].is_unlimited);
     EXPECT_TRUE(ini.axes[4].is_unlimited);
     EXPECT_FALSE(ini.axes[4].min || ini.axes[4].max) << "1e99 is LinuxCNC's word for none";
 }
 
-// Two joints of one axis: a gantry.
+// Two joints of one axis: it may move as the faster one, and a stop is that of the slower one.
 TEST(LinuxcncIni, AGantryTakesBothItsJoints) {
     const IniAxes ini = read_ini(
-        "[TRAJ]\nCOORDINATES=XYYZ\nLINEAR_UNITS=mm\n[JOINT_1]\nMAX_VELOCITY=9\n"
-        "[JOINT_2]\nMAX_VELOCITY=8\n[JOINT_3]\nMAX_VELOCITY=7\n",
+        "[TRAJ]\nCOORDINATES=XYYZ\nLINEAR_UNITS=mm\n[AXIS_Y]\nMAX_VELOCITY=8.5\n"
+        "[JOINT_1]\nMAX_VELOCITY=9\nMAX_ACCELERATION=50\nMIN_LIMIT=-9\nMAX_LIMIT=100\n"
+        "[JOINT_2]\nMAX_VELOCITY=8\nMAX_ACCELERATION=60\nMIN_LIMIT=-8\nMAX_LIMIT=101\n"
+        "[JOINT_3]\nMAX_VELOCITY=7\nMAX_ACCELERATION=40\n",
         "g.ini");
     ASSERT_EQ(ini.axes.size(), 3U);
-    EXPECT_EQ(ini.axes[1].speed, 8.0);
-    EXPECT_EQ(ini.axes[2].speed, 7.0);
+    const IniAxis &y = ini.axes[1], &z = ini.axes[2];
+    EXPECT_TRUE(y.is_gantry);
+    EXPECT_EQ(y.speed, 8.5) << "the axis has less than the faster joint";
+    EXPECT_EQ(y.acceleration, 60.0);
+    EXPECT_EQ(y.braking, 50.0);
+    EXPECT_EQ(y.min, -8.0) << "it ends where its first joint does";
+    EXPECT_EQ(y.max, 100.0);
+    EXPECT_FALSE(z.is_gantry);
+    EXPECT_EQ(z.speed, 7.0);
+    EXPECT_EQ(z.braking, 40.0);
 }
 
 constexpr const char* kHead = "[TRAJ]\nCOORDINATES = XZ\nLINEAR_UNITS = mm\n";
@@ -123,20 +135,6 @@ TEST(LinuxcncIni, OnlyTrivialKinematicsTakeTheLimitsOfTheTip) {
         EXPECT_EQ(axis_z(kinematics).max, 7.0);
         EXPECT_TRUE(axis_z(kinematics).follows_tip);
     }
-}
-
-// Source: LinuxCNC 2.10, initraj.cc.
-TEST(LinuxcncIni, JerkCountsOnlyWhereThePlannerLimitsIt) {
-    const auto jerk = [](const std::string& planner) {
-        return read_ini(std::string(kHead) + planner + "[AXIS_X]\nMAX_JERK = 100\n", "j.ini")
-            .axes.at(0)
-            .jerk;
-    };
-    EXPECT_FALSE(jerk("")) << "planner 0 is the default, and 2.9 has no other";
-    EXPECT_FALSE(jerk("PLANNER_TYPE = 0\n"));
-    EXPECT_FALSE(jerk("PLANNER_TYPE = 1\nMAX_LINEAR_JERK = 0.9\n")) << "back to planner 0";
-    EXPECT_EQ(jerk("PLANNER_TYPE = 1\n"), 100.0);
-    EXPECT_EQ(jerk("PLANNER_TYPE = 1 # S-curve\nMAX_LINEAR_JERK = 1\n"), 100.0);
 }
 
 TEST(LinuxcncIni, AnUnknownLetterOfCoordinatesIsNamed) {
@@ -412,6 +410,45 @@ TEST(LinuxcncIni, WhatIsWrongSaysWhere) {
                      "MIN_LIMIT = -99999\nMAX_LIMIT = 99999\n"),
               "");
     EXPECT_EQ(faults("[TRAJ\nCOORDINATES = X\n[\n]\n= 3\n").empty(), false) << "and no crash";
+}
+
+// Four classical frames have two slots each, and one of them is the status.
+TEST(LinuxcncIni, MoreThanSevenAxesTakeTheFormatWithOneFrame) {
+    std::vector<RoleGuess> roles;
+    for (const char* const axis : {"X", "Y", "Z", "A", "B", "C", "U"}) {
+        roles.push_back({});
+        roles.back().name = roles.back().axis = axis;
+        roles.back().file = kNoFile;
+    }
+    EXPECT_EQ(machine_file_text("m", {}, roles).find("format: fd"), std::string::npos);
+    roles.push_back(roles.back());
+    EXPECT_EQ(machine_file_text("m", {}, roles).find("format: fd"), std::string::npos)
+        << "two bodies on one axis";
+    roles.back().axis = "V";
+    EXPECT_NE(
+        machine_file_text("m", {}, roles).find("  format: fd  # one frame has room for 8 axes\n"),
+        std::string::npos);
+}
+
+// axguard_stop takes the second joint with coordinates=.
+TEST(LinuxcncIni, AGantryIsWrittenWithItsSkew) {
+    const IniAxes ini = read_ini(
+        "[TRAJ]\nCOORDINATES=XYY\nLINEAR_UNITS=mm\n[JOINT_1]\nMAX_ACCELERATION=50\n"
+        "[JOINT_2]\nMAX_ACCELERATION=60\n",
+        "g.ini");
+    std::vector<RoleGuess> roles(2);
+    roles[0].name = roles[0].axis = "X";
+    roles[1].name = roles[1].axis = "Y";
+    roles[0].file = roles[1].file = kNoFile;
+    const std::string text = machine_file_text("m", {}, roles, ini);
+    const std::size_t y = text.find("  Y: {");
+    ASSERT_NE(y, std::string::npos);
+    const std::string line = text.substr(y, text.find('\n', y) - y);
+    EXPECT_NE(line.find("acceleration_mm_s2: 120, "), std::string::npos) << line;
+    EXPECT_NE(line.find("stopping_mm_s2: 50, skew_mm: 0.1, "), std::string::npos) << line;
+    EXPECT_NE(line.find(", skew"), std::string::npos) << line;
+    EXPECT_NE(text.find("# skew_mm: "), std::string::npos);
+    EXPECT_EQ(text.substr(text.find("  X: {"), 200).find("skew"), std::string::npos);
 }
 
 }  // namespace

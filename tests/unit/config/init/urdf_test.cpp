@@ -115,7 +115,7 @@ TEST(Urdf, LimitsAreInMmAndDegrees) {
     EXPECT_DOUBLE_EQ(*x.min, -200);
     EXPECT_DOUBLE_EQ(*x.max, 300);
     EXPECT_DOUBLE_EQ(*x.speed, 500);
-    EXPECT_FALSE(x.is_rotary || x.acceleration || x.jerk);
+    EXPECT_FALSE(x.is_rotary || x.acceleration || x.braking);
     EXPECT_TRUE(turn.is_rotary && turn.is_unlimited);
     EXPECT_FALSE(turn.speed);
     const UrdfMachine revolute = read_urdf(robot_with("<axis xyz=\"0 0 1\"/>",
