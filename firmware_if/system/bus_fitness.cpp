@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdlib>
 #include <filesystem>
+#include <system_error>
 
 #include "firmware_if/system/fitness.hpp"
 
@@ -120,6 +121,30 @@ Finding check_losses(const std::string& folder, const std::string& bus) {
         is_fit ? "" : "assign a processor to the controller's interrupt: /proc/irq/N/smp_affinity"};
 }
 
+/// Last name of a link of /sys; empty: it is not there.
+std::string name_behind(const std::string& link) {
+    std::error_code error;
+    return std::filesystem::read_symlink(link, error).filename().string();
+}
+
+/// A controller behind SPI is read by a thread of its driver, a transfer for each register: at a
+/// full bus it loses frames, and a frame waits for that thread.
+void check_driver(const std::string& folder, const std::string& bus, std::vector<Finding>& out) {
+    const std::string driver = name_behind(folder + "/device/driver");
+    if (driver.empty()) {
+        return;  // a virtual bus
+    }
+    const std::string behind = name_behind(folder + "/device/subsystem");
+    const bool is_spi = behind == "spi" || driver.rfind("mcp251", 0) == 0;
+    out.push_back({is_spi ? Fitness::warn : Fitness::ok, bus + " driver",
+                   fmt::format("{}{}{}", driver, behind.empty() ? "" : ", " + behind,
+                               is_spi ? ": a controller behind SPI delays and loses frames" : ""),
+                   is_spi ? "use a controller of the processor's own, or on PCIe; else measure at "
+                            "full load: ip -details -statistics link show " +
+                                bus
+                          : ""});
+}
+
 }  // namespace
 
 std::vector<Finding> check_bus(const std::string& root, const std::string& bus,
@@ -136,6 +161,7 @@ std::vector<Finding> check_bus(const std::string& root, const std::string& bus,
     const bool is_up = (number_in(folder + "/flags") & IFF_UP) != 0;
     std::vector<Finding> findings{{is_up ? Fitness::ok : Fitness::bad, bus, is_up ? "up" : "down",
                                    is_up ? "" : "sudo ip link set " + bus + " up"}};
+    check_driver(folder, bus, findings);
     findings.push_back(check_queue(folder, bus));
     findings.push_back(check_losses(folder, bus));
     if (link) {

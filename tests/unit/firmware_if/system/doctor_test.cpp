@@ -47,6 +47,16 @@ class Tree {
         put("sys/class/net/can0/statistics/rx_over_errors", "0\n");
         put("sys/class/net/can0/statistics/rx_dropped", "0\n");
     }
+    /// A controller and its driver, as links of /sys.
+    void put_driver(const std::string& name, const std::string& behind) const {
+        const fs::path device = path("sys/class/net/can0/device");
+        fs::create_directories(device);
+        for (const char* link : {"driver", "subsystem"}) {
+            fs::remove(device / link);
+        }
+        fs::create_symlink("../../bus/" + behind + "/drivers/" + name, device / "driver");
+        fs::create_symlink("../../bus/" + behind, device / "subsystem");
+    }
     void put(const std::string& name, const std::string& text) const {
         fs::create_directories(fs::path(path(name)).parent_path());
         (void)shop_.write(name, text);
@@ -268,6 +278,10 @@ TEST(Doctor, EachFaultOfTheInterfaceIsOneLine) {
               [](const Tree&, Link&link) { link.rx_errors = 96; }},
              {"can0 state", Fitness::warn, "termination",
               [](const Tree&, Link&link) { link.bus_offs = 1; }},
+             {"can0 driver", Fitness::warn, "at full load",
+              [](const Tree&tree, Link&) { tree.put_driver("mcp251xfd", "spi"); }},
+             {"can0 driver", Fitness::warn, "at full load",  // m_can is behind either
+              [](const Tree&tree, Link&) { tree.put_driver("tcan4x5x", "spi"); }},
              {"can0 kind", Fitness::warn, "", [](const Tree&, Link&link) { link.kind = "vcan"; }},
          }) {
         const Tree tree;
@@ -282,6 +296,15 @@ TEST(Doctor, EachFaultOfTheInterfaceIsOneLine) {
     const Tree tree;
     tree.put("sys/class/net/can0/type", "1");
     EXPECT_EQ(check_bus(tree.root(), "can0", std::nullopt).at(0).found, "no CAN interface");
+}
+
+TEST(Doctor, NamesTheDriverOfTheController) {
+    const Tree tree;
+    tree.put_driver("mttcan", "platform");
+    const auto findings = check_bus(tree.root(), "can0", healthy_link());
+    EXPECT_TRUE(faults_of(findings).empty());
+    EXPECT_EQ(findings.at(1).subject, "can0 driver");
+    EXPECT_EQ(findings.at(1).found, "mttcan, platform");
 }
 
 TEST(Doctor, TheCommandEndsWith14WhereSomethingIsBadAndSaysWhat) {
