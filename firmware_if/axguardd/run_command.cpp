@@ -29,6 +29,7 @@
 #include "firmware_if/cli/guard_exit.hpp"
 #include "firmware_if/cli/json_output.hpp"
 #include "firmware_if/cli/machine_options.hpp"
+#include "firmware_if/proof_test/proof_test_command.hpp"
 #include "firmware_if/setup/choose_engine.hpp"
 #include "firmware_if/setup/cycle_parts.hpp"
 #include "firmware_if/setup/format_plan.hpp"
@@ -368,6 +369,7 @@ int run_axguardd(std::vector<std::string> words) {
     add_admit(line);
     add_status(line);
     add_board_test(line);
+    add_proof_test(line);
     line.add_completion();
     return line.parse_command(std::move(words), "Run axguardd --help for the list.");
 }

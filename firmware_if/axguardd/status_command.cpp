@@ -20,18 +20,12 @@ struct StatusArguments {
     JsonOutput json;
 };
 
-/// The given socket, or that of the service on this bus.
-std::string path_of(const StatusArguments& arguments) {
-    return arguments.socket.empty() ? fmt::format("/run/axguardd/{}/status", arguments.bus)
-                                    : arguments.socket;
-}
-
 int show_status(const StatusArguments& arguments) {
     if (arguments.bus.empty() == arguments.socket.empty()) {
         fmt::print(stderr, "axguardd: missing option. Pass either --bus IF or --socket PATH.\n");
         return kExitUsage;
     }
-    const std::string path = path_of(arguments);
+    const std::string path = status_path(arguments.bus, arguments.socket);
     std::string fault;
     const std::string line = read_status(path, fault);
     if (!fault.empty()) {

@@ -196,6 +196,10 @@ void StatusSocket::hand_over(std::span<const int> readers, std::span<const char>
     }
 }
 
+std::string status_path(const std::string& bus, const std::string& socket) {
+    return socket.empty() ? fmt::format("/run/axguardd/{}/status", bus) : socket;
+}
+
 std::string read_status(const std::string& path, std::string& fault) {
     fault.clear();
     sockaddr_un address{};

@@ -58,6 +58,9 @@ class StatusSocket {
     ino_t inode_ = 0;
 };
 
+/// The given socket; without one, that of the service on this bus.
+[[nodiscard]] std::string status_path(const std::string& bus, const std::string& socket);
+
 /// Reply of a guard on its socket.
 /// @param fault  why there is nothing, and what to do; empty: there is
 [[nodiscard]] std::string read_status(const std::string& path, std::string& fault);

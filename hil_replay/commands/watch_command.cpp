@@ -13,6 +13,7 @@
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/machine_options.hpp"
 #include "firmware_if/system/end_signals.hpp"
+#include "firmware_if/system/status_socket.hpp"
 #include "hil_replay/watch/watch_page.hpp"
 #include "hil_replay/watch/watch_run.hpp"
 
@@ -42,9 +43,7 @@ std::string fault_of(const WatchOptions& options, const std::optional<ListenAddr
 
 /// The status socket: the stated one, else the service's.
 std::string status_path_of(const WatchOptions& options) {
-    return options.socket.empty() && !options.bus.empty()
-               ? fmt::format("/run/axguardd/{}/status", options.bus)
-               : options.socket;
+    return options.bus.empty() ? options.socket : status_path(options.bus, options.socket);
 }
 
 /// False: `fault` has the failure and the next step.

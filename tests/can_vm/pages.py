@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Two pages of the guide, read and obeyed: each block of commands runs as the user whom it names,
+"""Three pages of the guide, read and obeyed: each block of commands runs as the user whom it names,
 after a login of its own, in the order of the page. tests/style/guide_blocks.py describes how a page
 marks its blocks, STAND_INS what replaces a thing that a guest has not.
 
@@ -38,6 +38,7 @@ STAND_INS = (
     (r" --cpu \d", "", "the guest has one processor"),
     (r"(?<=axguardd board-test)(.*)$", r"\1 --yes --only stop_frame",
      "one case of forty, and nobody to answer"),
+    (r"(?<=axguardd proof-test)(.*)$", r"\1 --person-seconds 2", "nobody moves the machine"),
     (r"--seconds 600", "--seconds 1", "a test has no ten minutes"),
 )
 
@@ -58,7 +59,7 @@ class Terminal:
         with open(self.words, "wb") as words:
             self.process = subprocess.Popen(
                 ["su", "--login", user, "--session-command",
-                 f"cd {WORK} && export PATH={PROGRAMS}:{BUILD}:$PATH && "
+                 f"cd {WORK} && export TMPDIR={HOME} PATH={PROGRAMS}:{BUILD}:$PATH && "
                  f"exec bash -euo pipefail {script}"],
                 stdin=subprocess.DEVNULL, stdout=words, stderr=words, start_new_session=True)
         RUNNING.append(self)
@@ -204,6 +205,13 @@ def prepare(page):
         print("a period of 5 ms, and a shorter program: a guest cannot keep 1 kHz for 40 s")
         shutil.copy(machine, WORK / "config/machines/paper-trunnion.yaml")
         shutil.copy(HERE / "collide.ngc", WORK / "hil_replay/programs/paper-trunnion-demo.ngc")
+    if page.endswith("every-day.md"):
+        print("a guard runs already, as a service")
+        sh(f"install -D -m 644 {machine} /etc/axguard/can0.yaml; "
+           f"cp -r {WORK}/meshes /etc/axguard/; "
+           f"{PROGRAMS}/systemctl enable --now axguardd@can0; for try in $(seq 100); do "
+           "[ -S /run/axguardd/can0/status ] && exit; sleep 0.2; done; "
+           f"cat {FOLDER}/journal; exit 1")
     sh(f"chown -R {USER}: {WORK}")
 
 

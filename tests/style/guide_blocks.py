@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Every block of commands of two pages of the guide names who runs it, and is run or excused.
+"""Every block of commands of three pages of the guide names who runs it, and is run or excused.
 
 The first line of a fenced sh block, which a reader sees:
     # user               an ordinary user; sudo in front of a command makes it root's
@@ -27,7 +27,7 @@ import sys
 from readme_commands import MARK, text_block
 from sources import finish
 
-PAGES = ("docs/guide/live.md", "docs/guide/bring-up.md")
+PAGES = ("docs/guide/live.md", "docs/guide/bring-up.md", "docs/guide/every-day.md")
 GUEST_MARK = re.compile(r"\s*<!-- guest: (run(?P<options> .*)?|left out: (?P<why>.+)) -->\s*$")
 WHO = re.compile(r"# (?P<user>user|root)(, terminal (?P<terminal>\d))?(, on the (PC|Jetson))?$")
 OPTIONS = {"exit", "prints", "until", "after", "then"}

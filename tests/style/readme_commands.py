@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The commands of the README and of two pages of the guide do what these pages say.
+"""The commands of the README and of three pages of the guide do what these pages say.
 
 A fenced sh block runs when the line above its fence is a mark, invisible to a reader:
     <!-- ctest: run -->                  ends with 0
@@ -26,7 +26,8 @@ from sources import finish, read_text, skip
 MARK = re.compile(r"\s*<!-- ctest: run(?P<options>( data| exit=\d+)*) -->\s*$")
 
 
-PAGES = ("README.md", "docs/guide/first-machine.md", "docs/guide/bring-up.md")
+PAGES = ("README.md", "docs/guide/first-machine.md", "docs/guide/bring-up.md",
+         "docs/guide/every-day.md")
 
 
 @dataclasses.dataclass
