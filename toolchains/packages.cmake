@@ -131,7 +131,18 @@ add_custom_target(packaged DEPENDS axguard axguard-lab axguardd axg_c axg_firmwa
   ${AXG_ARCHIVE})
 add_dependencies(packaged packaged_pages)
 if(TARGET axguard-hal)
-  add_dependencies(packaged axguard-hal axguard_stop)
+  # Types of the pins from the sources, meanings from the page.
+  set(manuals ${PROJECT_BINARY_DIR}/packaged/axguard_stop.9
+              ${PROJECT_BINARY_DIR}/packaged/axguard-hal.9)
+  add_custom_command(OUTPUT ${manuals}
+    DEPENDS toolchains/hal_man_pages.py toolchains/man_pages.py docs/reference/linuxcnc.md
+            firmware_if/linuxcnc/axguard_pins.h firmware_if/linuxcnc/axguard_hal.c
+    COMMAND Python3::Interpreter toolchains/hal_man_pages.py ${PROJECT_VERSION}
+            ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/packaged
+    WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+  add_custom_target(packaged_hal_pages DEPENDS ${manuals})
+  install(FILES ${manuals} DESTINATION ${CMAKE_INSTALL_MANDIR}/man9 COMPONENT axguard-linuxcnc)
+  add_dependencies(packaged axguard-hal axguard_stop packaged_hal_pages)
 endif()
 list(JOIN outside " " AXG_LIBRARIES_PRIVATE)
 list(TRANSFORM outside REPLACE "[$]{libdir}" "\${AXGUARD_LIBRARIES}" OUTPUT_VARIABLE linked)

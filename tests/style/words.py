@@ -14,9 +14,9 @@ import sys
 
 from sources import finish, read_text, tracked_files
 
-# Pages, most words of all of them: a limit against growth. The first four sum to 49,998.
+# Pages, most words of all of them: a limit against growth. The first four sum to 50,166.
 SHELVES = {
-    "guide": (["README.md", "docs/guide/*"], 9_818),
+    "guide": (["README.md", "docs/guide/*"], 9_986),
     "theory": (["docs/theory/*"], 13_080),
     "reference": (["docs/reference/*"], 18_600),
     "measurements and decisions": (["docs/measurements/*", "docs/decisions/*"], 8_500),
