@@ -3,6 +3,16 @@
 // is what tests look at.
 "use strict";
 
+/** What each state means for the person at the machine. */
+const PLAIN_STATES = {
+  armed: "The machine may move while each stop is proven.",
+  ready: "No motion is permitted. Arm the board, then the guard.",
+  selftest: "No motion is permitted: the guard tests itself, or cannot prove a stop from here.",
+  init: "No motion is permitted: the guard starts.",
+  running: "The guard runs; whether it is armed is not known here.",
+  stopped: "No motion is permitted. Remove the cause, reset, arm.",
+  unreachable: "Nothing is known of the guard.",
+};
 const STATE_MARKS = {armed: "\u25cf", ready: "\u25c6", selftest: "\u25cb", init: "\u25cb",
                      running: "\u25d0", stopped: "\u25a0", unreachable: "\u2715"};
 const SILENT_MS = 2000;    // without an event: the server does not answer
@@ -110,6 +120,7 @@ class LivePage {
     const isNew = this.byId("headline").textContent !== text;
     this.byId("header").className = kind;
     this.byId("mark").textContent = STATE_MARKS[kind] || "";
+    this.byId("plain").textContent = PLAIN_STATES[kind] || "";
     const source = this.state && this.state.bus ? ` on ${this.state.bus.name}` : "";
     this.byId("subline").textContent = `${this.data.machine.name}${source}` +
       (since === null ? "" : `, for ${seconds(since)}`);

@@ -3,6 +3,23 @@
 // is what tests look at.
 "use strict";
 
+/** Reasons of a stop (docs/reference/json.md) that have no sentences of their own. */
+const PLAIN_REASONS = {
+  contact: "two bodies touch, or are nearer than their margin",
+  contained: "a body is inside another",
+  left_limits: "an axis broke a limit that the machine file declares",
+  left_travel: "an axis left its travel",
+  left_path: "the axes left the announced path",
+  left_jog: "the axes left the chosen jog",
+  left_cap: "the board did not obey the speed cap",
+  own_stop: "the board stopped by itself",
+  tool: "the machine file does not have this tool",
+  input: "positions were lost, late or wrong",
+  silence: "the last permit has ended",
+  engine: "the engine gave no result",
+  known_answer: "the engine failed its own test",
+};
+
 const PERMIT_GONE = 0.5;
 const LEVELS = ["stop", "slow", "warn", "clear"];  // core/guard/margin_state.hpp
 
@@ -40,7 +57,7 @@ class RunPage {
     const lines = data.words.split("\n").filter((line) => line.trim() !== "");
     const headline = lines.find((line) => /^(STOP|no stop)/.test(line)) ||
       lines.find((line) => line.startsWith("NO PERMIT")) || lines[0] || "";
-    this.byId("headline").textContent = headline;
+    this.byId("headline").textContent = this.inPlainWords(headline);
     this.byId("subline").textContent = `${data.machine.name}: ${data.title}`;
     this.byId("words").textContent = data.words.trim();
     const isStopped = /^(STOP|NO PERMIT)/.test(headline);
@@ -49,6 +66,16 @@ class RunPage {
     this.byId("rows").textContent = stride > 1
       ? `${count} samples in ${rows} rows of ${stride}: least and most are kept, and the machine is
          shown at the sample of least clearance.` : `${count} samples, all of them.`;
+  }
+
+  /** STOP at 3.145 s: why, as a sentence. The command's own line stays where nothing is known. */
+  inPlainWords(headline) {
+    const [head, seconds] = /^(?:STOP|NO PERMIT).* at ([0-9.]+) s/.exec(headline) || [];
+    const stop = head && this.data.stops.find(({time_us: us}) =>
+      Math.abs(us * 1e-6 - Number(seconds)) < 1e-6);
+    const why = stop && (stop.why && stop.why.sentences ? stop.why.sentences[0]
+                                                        : PLAIN_REASONS[stop.reason]);
+    return why ? `${head.replace(seconds, Number(seconds).toFixed(3))}: ${why}` : headline;
   }
 
   /** Time, exact axes and triangles of each stop that the results name. */

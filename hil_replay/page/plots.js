@@ -8,6 +8,10 @@ const LINE_COLOURS = ["#1d6fa5", "#a4161a", "#2f7a3d", "#7b4fa3", "#8a5a00", "#4
                       "#00707a"];
 const LINE_DASHES = [[], [7, 3], [2, 3]];
 const MARKS_A_CURVE = 6;
+/** Tick labels of an axis with their unit. */
+const withUnit = (unit) => (value) => `${Number(value.toPrecision(4))} ${unit}`;
+const asPercent = (value) => `${Math.round(100 * value)} %`;
+const asYesOrNo = (value) => ({0: "no", 1: "yes"}[value] || "");
 /** Corners of each mark, in a square from -1 to 1; a mark without area is drawn with lines. */
 const MARK_SHAPES = [
   [[-1, -1], [1, -1], [1, 1], [-1, 1]], [[0, -1.2], [1.1, 1], [-1.1, 1]],
@@ -59,8 +63,10 @@ class Plots {
     const {cycle_us: cycles, valid_periods: valid, cap_percent: cap} = data.samples;
     this.addOrHide(cycles, "cycles", () => this.addCycles(cycles));
     this.addOrHide(cycles, "histogram", () => this.addHistogram());
-    this.addOrHide(valid, "valid", () => this.addSteps("plot_valid", "periods", valid, 15.5));
-    this.addOrHide(cap, "cap", () => this.addSteps("plot_cap", "% of rapid", cap, 105));
+    this.addOrHide(valid, "valid", () => this.addSteps("plot_valid", "periods", valid, 15.5,
+                                                           withUnit("periods")));
+    this.addOrHide(cap, "cap", () => this.addSteps("plot_cap", "% of rapid", cap, 105,
+                                                     withUnit("%")));
     window.addEventListener("resize", () => this.setTime(this.time));
   }
 
@@ -75,7 +81,7 @@ class Plots {
     }
     const margins = [...new Set(near.map((pair) => pair.margin_mm))];
     this.add("plot_clearance", near.map((pair) => pair.name), (i) => near.map((p) => p.values[i]),
-             {valueRange: [0, within], levels: margins});
+             {valueRange: [0, within], levels: margins, label: withUnit("mm")});
   }
 
   /** Least, shown and most of each axis, as shares of its range in this run. */
@@ -105,12 +111,12 @@ class Plots {
   }
 
   addPermit() {
-    this.addSteps("plot_permit", "permit", this.data.samples.permit, 1.15);
+    this.addSteps("plot_permit", "permit", this.data.samples.permit, 1.15, asYesOrNo);
   }
 
-  addSteps(id, name, values, most) {
+  addSteps(id, name, values, most, label) {
     this.add(id, [name], (i) => [values[i]],
-             {stepPlot: true, fillGraph: true, valueRange: [0, most]});
+             {stepPlot: true, fillGraph: true, valueRange: [0, most], label});
   }
 
   /** A plot of a column that has no value in this run is left out. */
@@ -127,7 +133,7 @@ class Plots {
 
   addCycles(spent) {
     this.add("plot_cycles", ["slowest"], (i) => [spent[i]],
-             {levels: [this.data.deadline_us], logscale: true});
+             {levels: [this.data.deadline_us], logscale: true, label: withUnit("us")});
   }
 
   addHistogram() {
@@ -135,7 +141,8 @@ class Plots {
     const element = document.getElementById("plot_histogram");
     this.histogram = new Dygraph(element, rows, {
       labels: ["us", "cycles"], logscale: true, stepPlot: true, fillGraph: true,
-      axes: {x: {logscale: true}, y: {axisLabelWidth: 44}}, colors: ["#1d6fa5"],
+      axes: {x: {logscale: true, axisLabelFormatter: withUnit("us")},
+             y: {axisLabelWidth: 84, axisLabelFormatter: withUnit("cycles")}}, colors: ["#1d6fa5"],
       legend: "never", dateWindow: [0.9 * rows[0][0],
                                     1.2 * Math.max(rows[rows.length - 1][0], this.data.deadline_us)],
       underlayCallback: (context, area, plot) => {
@@ -145,7 +152,7 @@ class Plots {
   }
 
   addBands(id, names, values, valueRange) {
-    this.add(id, names, values, {customBars: true, ...(valueRange ? {valueRange} : {})});
+    this.add(id, names, values, {customBars: true, label: asPercent, ...(valueRange ? {valueRange} : {})});
   }
 
   dash(context, x0, y0, x1, y1) {
@@ -189,8 +196,11 @@ class Plots {
     });
   }
 
-  /** @param values  of row i, one a name */
-  add(id, names, values, {levels = [], ...options}) {
+  /**
+   * @param values  of row i, one a name
+   * @param label   text of a tick of the upright axis, with its unit
+   */
+  add(id, names, values, {label, levels = [], ...options}) {
     const element = document.getElementById(id);
     const rows = this.data.samples.time_s.map((time, i) => [time, ...values(i)]);
     const {fillPlotter, errorPlotter, linePlotter} = Dygraph.Plotters;
@@ -203,7 +213,8 @@ class Plots {
       plotter: [fillPlotter, errorPlotter, linePlotter, (plotted) => this.drawMarks(plotted)],
       legend: "never", strokeWidth: 1.4, animatedZooms: false,
       highlightCircleSize: 2, fillAlpha: 0.2,
-      axes: {y: {axisLabelWidth: 44}, x: {axisLabelFormatter: (value) => String(value)}},
+      axes: {y: {axisLabelWidth: 64, axisLabelFormatter: label},
+             x: {axisLabelFormatter: (value) => `${value} s`}},
       clickCallback: (event, x) => this.goTo(x),
       zoomCallback: (from, to) => this.setRange(from, to),
       underlayCallback: (context, area, drawn) => {

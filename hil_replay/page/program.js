@@ -3,7 +3,7 @@
 // is marked and in view, a chosen one is where the page goes.
 "use strict";
 
-const PROGRAM_ROW_PX = 20;     // page.css
+const PROGRAM_ROW_PX = window.matchMedia("(pointer: coarse)").matches ? 44 : 20;  // page.css
 const PROGRAM_ROWS_MORE = 20;  // above and below what is in view
 const PROGRAM_NAME_MAX = 32;   // characters of the file's name over the picture
 

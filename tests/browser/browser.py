@@ -50,3 +50,19 @@ def resize(browser, width=None, height=None):
     # Two frames: one to lay out, one for what listens to the size.
     browser.execute_async_script(
         "const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(done))")
+
+
+def touch(browser, is_on):
+    """Fingers in place of a mouse."""
+    browser.execute_cdp_cmd("Emulation.setTouchEmulationEnabled", {"enabled": is_on})
+
+
+def small_targets(browser):
+    """What a finger would miss: buttons, choices, sliders, and check boxes with their labels."""
+    return browser.execute_script("""
+        const all = document.querySelectorAll("button, select, input[type=range], label");
+        return [...all].filter((e) => e.offsetParent !== null &&
+            (e.tagName !== "LABEL" || e.querySelector("input[type=checkbox]")))
+          .map((e) => [e.id || e.textContent.trim(), e.getBoundingClientRect()])
+          .filter(([, box]) => box.width < 44 || box.height < 44)
+          .map(([name, box]) => `${name}: ${box.width} x ${box.height}`);""")

@@ -16,7 +16,7 @@ import tempfile
 import threading
 import time
 
-from browser import ActionChains, Keys, browser_or_exit, resize
+from browser import ActionChains, Keys, browser_or_exit, resize, small_targets
 from report_test import SIZES, TEXT_CONTRAST, run, text_contrasts
 
 # Moves at once, stays where the guard permits it.
@@ -157,6 +157,7 @@ def check_states(browser, guard):
     """Each state in words, and what a screen reader is told."""
     guard.say(phase="armed", phase_ms=100)
     headline_is(browser, "armed", "Armed")
+    check("may move" in browser.find_element("id", "plain").text, "armed, in no plain words")
     news = browser.find_element("id", "news")
     check(news.get_attribute("textContent") == "Armed" and news.get_attribute("role") == "status",
           "a change of phase is not announced")
@@ -228,6 +229,8 @@ def check_sizes(browser):
               box(document.getElementById("machine")).width];""")
         check(wide <= 0 and not outside, f"{width} px: {wide} px too wide, outside: {outside}")
         check(small >= min(250, width - 40), f"{width} px: a view of {small} px")
+        missed = small_targets(browser)
+        check(not missed, f"{width} px: too small for a finger: {missed}")
     resize(browser)
 
 

@@ -13,7 +13,7 @@ import sys
 import tempfile
 import time
 
-from browser import ActionChains, Keys, browser_or_exit, resize
+from browser import ActionChains, Keys, browser_or_exit, resize, small_targets, touch
 
 LINE_MM = 2e-3  # positions of rows are written to seven digits
 
@@ -61,7 +61,8 @@ def check_stop(browser, results, table):
     for name, position in zip(names, shown):
         check(abs(position - float(last[name])) < 1e-5, f"{name}: {position}, table {last[name]}")
     headline = browser.find_element("id", "headline").text
-    check(headline.startswith("STOP") and stop["pair"] in headline, f"headline: {headline}")
+    why = browser.execute_script("return axguard.stops[0].why.sentences[0]")
+    check(headline.startswith("STOP at ") and why in headline, f"headline: {headline}")
 
 
 def check_touching(browser, results):
@@ -313,6 +314,25 @@ def check_jogs(browser):
     check("0 s to 2 s: +50 mm; X+ moves x to -x" in words, f"check: {words}")
 
 
+def check_units(browser):
+    """Each tick of each chart has its unit."""
+    labels = browser.execute_script(
+        "return [...document.querySelectorAll('.dygraph-axis-label')].map((e) => e.textContent)")
+    bare = [label for label in labels if label and not any(c.isalpha() or c == "%" for c in label)]
+    check(len(labels) > 10 and not bare, f"ticks without a unit: {bare} of {labels}")
+
+
+def check_fingers(browser, name):
+    """On a telephone, and on a tablet that is held across."""
+    for width, height in SIZES[:2]:
+        touch(browser, True)
+        resize(browser, width, height)
+        small = small_targets(browser)
+        check(not small, f"{name} at {width} px: too small for a finger: {small}")
+        touch(browser, False)
+    resize(browser)
+
+
 def check_sizes(browser, name):
     """Nothing wider than the screen, no legend over its plot, each control to be reached."""
     for width, height in SIZES:
@@ -523,6 +543,8 @@ def main():
                 check_program_choice(browser, read_steps(trace))
                 check_contact(browser, mode)
                 check_sizes(browser, mode)
+                check_fingers(browser, mode)
+                check_units(browser)
             check_contrast(browser)
             check_legends(browser)
             check_plots(browser)
