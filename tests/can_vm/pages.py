@@ -199,6 +199,8 @@ def prepare(page):
     shutil.copytree(SOURCE / "config/machines", WORK / "config/machines")
     shutil.copytree(SOURCE / "hil_replay/programs", WORK / "hil_replay/programs")
     shutil.copytree(SOURCE / "config/machines/meshes", WORK / "meshes")
+    service = "firmware_if/axguardd/service"
+    shutil.copytree(SOURCE / service, WORK / service)
     machine = machine_file(has_hashes=True, permit_samples=5)
     shutil.copy(machine, WORK / "machine.yaml")
     if page.endswith("live.md"):
