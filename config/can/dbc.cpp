@@ -22,6 +22,7 @@ bool is_of_no_message(std::uint32_t id) noexcept {
     return id == 0xC0000000U || id == 0x40000000U;
 }
 
+constexpr const char* kExtended = "extended multiplexing";
 constexpr std::uint32_t kFrameFormatFd = 14, kFrameFormatExtendedFd = 15;  // of VFrameFormat
 // Words that begin a section. A list of names without an end sign ends before one of them.
 constexpr std::string_view kSections =
@@ -41,6 +42,13 @@ struct Remark {
     std::string_view signal;  // empty: of the whole message
     std::uint32_t value;
     int line;
+};
+
+/// SG_MUL_VAL_: the values of a multiplexor in whose frames a signal is.
+struct TurnValues {
+    std::uint32_t id;
+    std::string_view signal, selector;
+    std::uint32_t least, most;  // of all its ranges
 };
 
 class DbcParser {
@@ -160,12 +168,15 @@ class DbcParser {
     bool read_bits(DbcSignal& signal);
     bool read_scale(DbcSignal& signal);
     bool read_value_type();
-    bool read_turn_list();
+    bool read_type_reference();
+    bool read_turn_values();
+    bool read_values(TurnValues& values);
     bool read_attribute();
     void apply_remarks();
     void apply_type(DbcSignal& signal, const Remark& remark, const std::string& key);
     void check_names();
     void check_turns(DbcMessage& message);
+    void apply_turn_values(DbcMessage& message);
 
     FaultList faults_;
     std::string_view rest_;
@@ -176,7 +187,8 @@ class DbcParser {
     int section_line_ = 1;
     Dbc dbc_;
     std::size_t signal_count_ = 0;
-    std::vector<Remark> types_, turn_lists_, formats_;
+    std::vector<Remark> types_, references_, formats_;
+    std::vector<TurnValues> turn_values_;
 };
 
 void DbcParser::read_section() {
@@ -210,8 +222,10 @@ void DbcParser::read_section() {
         }
     } else if (name == "SIG_VALTYPE_") {
         read_value_type();
-    } else if (name == "SG_MUL_VAL_" || name == "SIG_TYPE_REF_") {
-        read_turn_list();
+    } else if (name == "SG_MUL_VAL_") {
+        read_turn_values();
+    } else if (name == "SIG_TYPE_REF_") {
+        read_type_reference();
     } else if (name == "BA_") {
         read_attribute();
     } else {
@@ -325,7 +339,7 @@ bool DbcParser::read_turn(DbcSignal& signal) {
         return fail("\":\", or M, or m and a number");
     }
     signal.turn = DbcSignal::Turn::selected;
-    signal.refused = is_both ? "extended multiplexing" : "";
+    signal.refused = is_both ? kExtended : "";
     advance();
     return true;
 }
@@ -370,15 +384,56 @@ bool DbcParser::read_value_type() {
     return true;
 }
 
-/// SG_MUL_VAL_ and SIG_TYPE_REF_ redefine a signal: the signals of the message are refused.
-bool DbcParser::read_turn_list() {
+/// One range of SG_MUL_VAL_, such as 1-3: `values` covers it afterwards, too.
+bool DbcParser::read_values(TurnValues& values) {
+    constexpr const char* kWanted = "a range of multiplexor values, such as 1-3";
+    std::uint32_t least = 0, most = 0;
+    if (!take_whole(least, UINT32_MAX, kWanted)) {
+        return false;
+    }
+    if (now_.is("-")) {
+        advance();
+    } else if (now_.kind == DbcToken::Kind::number && now_.text.starts_with('-')) {
+        now_.text.remove_prefix(1);  // read as the sign of the number
+    } else {
+        return fail(kWanted);
+    }
+    if (!take_whole(most, UINT32_MAX, kWanted)) {
+        return false;
+    }
+    values.least = std::min(values.least, least);
+    values.most = std::max(values.most, most);
+    return true;
+}
+
+/// SG_MUL_VAL_ 400 P0 Page 0-0, 4-7;
+bool DbcParser::read_turn_values() {
+    TurnValues values{.id = 0, .signal = {}, .selector = {}, .least = UINT32_MAX, .most = 0};
+    advance();
+    if (!take_whole(values.id, UINT32_MAX, "the identifier of a message") ||
+        !take_word(values.signal, "the name of a signal") ||
+        !take_word(values.selector, "the name of its multiplexor") || !read_values(values)) {
+        return false;
+    }
+    while (now_.is(",")) {
+        advance();
+        if (!read_values(values)) {
+            return false;
+        }
+    }
+    turn_values_.push_back(values);
+    return take(";");
+}
+
+/// SIG_TYPE_REF_ redefines a signal: the signals of the message are refused.
+bool DbcParser::read_type_reference() {
     const int line = now_.line;
     advance();
     std::uint32_t id = 0;
     if (!take_whole(id, UINT32_MAX, "the identifier of a message")) {
         return false;
     }
-    turn_lists_.push_back({.id = id, .signal = {}, .value = 0, .line = line});
+    references_.push_back({.id = id, .signal = {}, .value = 0, .line = line});
     skip_statement();
     return is_sound_;
 }
@@ -445,12 +500,11 @@ void DbcParser::apply_remarks() {
             apply_type(*found, remark, key);
         }
     }
-    for (const Remark& remark : turn_lists_) {
+    for (const Remark& remark : references_) {
         const auto message = by_id.find(remark.id);
         if (message != by_id.end()) {
             for (DbcSignal& signal : message->second->signals) {
-                signal.refused =
-                    "SG_MUL_VAL_ or SIG_TYPE_REF_ in line " + std::to_string(remark.line);
+                signal.refused = "SIG_TYPE_REF_ in line " + std::to_string(remark.line);
             }
         }
     }
@@ -463,10 +517,41 @@ void DbcParser::apply_remarks() {
     }
 }
 
+/// A signal of one value of the message's one M keeps its meaning. A page of several values, and a
+/// page of a page, have none that a frame's selector could state.
+void DbcParser::apply_turn_values(DbcMessage& message) {
+    const bool is_extended =
+        std::any_of(message.signals.begin(), message.signals.end(),
+                    [](const DbcSignal& signal) { return signal.refused == kExtended; });
+    const auto is_root = [&message](std::string_view name) {
+        return std::any_of(message.signals.begin(), message.signals.end(), [&](const auto& other) {
+            return other.name == name && other.turn == DbcSignal::Turn::selector;
+        });
+    };
+    for (DbcSignal& signal : message.signals) {
+        const bool is_page = signal.turn == DbcSignal::Turn::selected;
+        bool is_named = false, has_roots = is_page;
+        std::uint32_t least = signal.selected_by, most = least;
+        for (const TurnValues& values : turn_values_) {
+            if (values.id == whole_id(message) && values.signal == signal.name) {
+                is_named = true;
+                has_roots = has_roots && is_root(values.selector);
+                least = std::min(least, values.least);
+                most = std::max(most, values.most);
+            }
+        }
+        const char* const of_named = !has_roots      ? kExtended
+                                     : least != most ? "several multiplexor values"
+                                                     : "";
+        const char* const of_other =
+            is_extended && is_page ? "a page without SG_MUL_VAL_, beside a multiplexed one" : "";
+        signal.refused += !signal.refused.empty() ? "" : is_named ? of_named : of_other;
+    }
+}
+
 /// A message with multiplexed signals needs exactly one selector.
 void DbcParser::check_turns(DbcMessage& message) {
-    std::size_t selectors = 0;
-    std::size_t selected = 0;
+    std::size_t selectors = 0, selected = 0;
     for (const DbcSignal& signal : message.signals) {
         selectors += signal.turn == DbcSignal::Turn::selector ? 1 : 0;
         selected += signal.turn == DbcSignal::Turn::selected ? 1 : 0;
@@ -494,6 +579,7 @@ void DbcParser::check_names() {
                             "one signal of that name in a message");
             }
         }
+        apply_turn_values(message);
         check_turns(message);
     }
 }

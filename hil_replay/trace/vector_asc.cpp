@@ -2,6 +2,7 @@
 #include "hil_replay/trace/vector_asc.hpp"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "hil_replay/trace/asc_date.hpp"
@@ -265,11 +266,26 @@ bool is_start(Words words) noexcept {
            starts_with_any_case(words.rest(), "start der messung");
 }
 
-/// Chip status, bus statistics, system variables, and messages that CANoe's transport layer put
-/// together from frames, which have lines of their own.
+/// Begins an event of CANoe itself, or of a bus that is not CAN.
+bool is_of_no_can(std::string_view word) noexcept {
+    constexpr std::array<std::string_view, 13> kWords{"SV:",  "TFS:", "ETH",       "Fr",  "AFDX",
+                                                      "A429", "WLAN", "J1708",     "M25", "M50",
+                                                      "M150", "Li",   "GPS-Event:"};
+    std::uint32_t channel = 0;  // L2 is the second channel of LIN
+    return std::find(kWords.begin(), kWords.end(), word) != kWords.end() ||
+           (word.starts_with('L') && to_number(word.substr(1), 10, 255, channel));
+}
+
+/// Chip status, bus statistics, system and environment variables, triggers, other buses, overload
+/// frames, which carry nothing, and messages that CANoe's transport layer put together from frames,
+/// which have lines of their own.
 bool is_event_without_frame(Words words) noexcept {
+    if (starts_with_any_case(words.rest(), "log trigger") ||
+        starts_with_any_case(words.rest(), "log direct")) {
+        return true;
+    }
     std::string_view word = words.next();
-    if (word == "SV:") {
+    if (is_of_no_can(word) || words.peek() == ":=") {
         return true;
     }
     if (word == "CAN" || word == "CANFD") {
@@ -278,7 +294,8 @@ bool is_event_without_frame(Words words) noexcept {
     std::uint32_t channel = 0;
     const std::string_view event = words.next();
     return to_number(word, 10, 255, channel) &&
-           (event.starts_with("Status:") || event.starts_with("Statistic:") || event == "J1939TP");
+           (event.starts_with("Status:") || event.starts_with("Statistic:") || event == "J1939TP" ||
+            event == "OverloadFrame");
 }
 
 TextTrace::Line AscTrace::parse(std::string_view line, CanFrame& frame, std::string_view& device,

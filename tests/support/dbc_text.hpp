@@ -45,6 +45,9 @@ CM_ SG_ 385 X "Position; as the encoder
 measures it";
 VAL_ 385 State 0 "rest" 1 "moves" 2 "tool change" ;
 SIG_VALTYPE_ 386 A : 1;
+SG_MUL_VAL_ 400 P0 Page 0-0;
+SG_MUL_VAL_ 400 P1 Page 1 - 1;
+SG_MUL_VAL_ 400 Deep Page 2-2;
 )";
 
 /// The small machine, its frames from kBoardDbc.

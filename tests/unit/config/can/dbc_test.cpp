@@ -102,8 +102,7 @@ TEST(DbcFile, WhatRestatesASignalKeepsItFromUse) {
         return read(kBoardDbc + more).messages[2].signals[1].refused;
     };
     EXPECT_EQ(reason(""), "");
-    EXPECT_EQ(reason("SG_MUL_VAL_ 400 P0 Page 0-0;\n"), "SG_MUL_VAL_ or SIG_TYPE_REF_ in line 36");
-    EXPECT_EQ(reason("SIG_TYPE_REF_ 400 P0 : T;\n"), "SG_MUL_VAL_ or SIG_TYPE_REF_ in line 36");
+    EXPECT_EQ(reason("SIG_TYPE_REF_ 400 P0 : T;\n"), "SIG_TYPE_REF_ in line 39");
     EXPECT_EQ(reason("SG_MUL_VAL_ 385 X Page 0-0;\n"), "");
     const Dbc orphan = read("BO_ 1 M: 8 N\n SG_ S m0 : 0|8@1+ (1,0) [0|0] \"\" N\n");
     EXPECT_EQ(orphan.messages[0].signals[0].refused, "a multiplexed message without multiplexor");
@@ -111,6 +110,35 @@ TEST(DbcFile, WhatRestatesASignalKeepsItFromUse) {
         "BO_ 1 M: 8 N\n SG_ S M : 0|8@1+ (1,0) [0|0] \"\" N\n"
         " SG_ T M : 8|8@1+ (1,0) [0|0] \"\" N\n");
     EXPECT_EQ(two.messages[0].signals[0].refused, "a message with two multiplexors");
+}
+
+// A page whose selector is not one value of the one M would be read in frames of another page.
+TEST(DbcFile, APageOfOneValueOfTheOneMultiplexorIsUsed) {
+    const std::string message =
+        "BO_ 1 M: 8 N\n SG_ S M : 0|8@1+ (1,0) [0|0] \"\" N\n"
+        " SG_ A m1 : 8|8@1+ (1,0) [0|0] \"\" N\n SG_ B m2M : 16|8@1+ (1,0) [0|0] \"\" N\n"
+        " SG_ C m1 : 24|8@1+ (1,0) [0|0] \"\" N\n SG_ D : 32|8@1+ (1,0) [0|0] \"\" N\n";
+    const auto reason = [&message](std::size_t signal, const std::string& more) {
+        return read(message + more).messages[0].signals[signal].refused;
+    };
+    const std::string without = "a page without SG_MUL_VAL_, beside a multiplexed one";
+    EXPECT_EQ(reason(1, ""), without) << "of S or of B";
+    EXPECT_EQ(reason(4, ""), "") << "in every frame";
+    EXPECT_EQ(reason(1, "SG_MUL_VAL_ 1 A S 1-1;\nSG_MUL_VAL_ 1 B S 2-2;\n"), "");
+    EXPECT_EQ(reason(3, "SG_MUL_VAL_ 1 A S 1-1;\n"), without);
+    EXPECT_EQ(reason(3, "SG_MUL_VAL_ 1 C B 1-1;\n"), "extended multiplexing");
+    EXPECT_EQ(reason(2, "SG_MUL_VAL_ 1 B S 2-2;\n"), "extended multiplexing");
+    for (const char* more :
+         {"SG_MUL_VAL_ 1 A S 1-2;\n", "SG_MUL_VAL_ 1 A S 1-1, 3-3;\n", "SG_MUL_VAL_ 1 A S 2-2;\n",
+          "SG_MUL_VAL_ 1 A S 1-1;\nSG_MUL_VAL_ 1 A S 0-0;\n"}) {
+        EXPECT_EQ(reason(1, more), "several multiplexor values") << more;
+    }
+    for (const char* more :
+         {"SG_MUL_VAL_ 1 A B 1-1;\nSG_MUL_VAL_ 1 A S 1-1;\n",
+          "SG_MUL_VAL_ 1 A S 1-1;\nSG_MUL_VAL_ 1 A B 1-1;\n", "SG_MUL_VAL_ 1 A Nobody 1-1;\n"}) {
+        EXPECT_EQ(reason(1, more), "extended multiplexing") << more;
+    }
+    EXPECT_EQ(reason(4, "SG_MUL_VAL_ 1 D S 0-0;\n"), "extended multiplexing");
 }
 
 TEST(DbcFile, TheFirstThingThatCannotBeReadIsSaidWithItsLine) {
@@ -152,8 +180,14 @@ TEST(DbcFile, TheFirstThingThatCannotBeReadIsSaidWithItsLine) {
              Case{"measures it\";", "measures it;",
                   "b.dbc:35: CM_: invalid value (found \"rest\\\" 1 \\\"\", expected"},
              Case{"A : 1;", "A : 1",
-                  "b.dbc:36: SIG_VALTYPE_: invalid value (found the end of the file, expected "
+                  "b.dbc:36: SIG_VALTYPE_: invalid value (found \"SG_MUL_VAL_\", expected "
                   "\";\").\n"},
+             Case{"Deep Page 2-2;", "Deep Page 2-2",
+                  "b.dbc:39: SG_MUL_VAL_: invalid value (found the end of the file, expected "
+                  "\";\").\n"},
+             Case{"Deep Page 2-2;", "Deep Page 2;",
+                  "b.dbc:38: SG_MUL_VAL_: invalid value (found \";\", expected a range of "
+                  "multiplexor values, such as 1-3).\n"},
              Case{"A : 1;", "A : 4;",
                   "b.dbc:35: SIG_VALTYPE_: invalid value (found \"4\", expected 0 integer, 1 float "
                   "or 2 double).\n"},

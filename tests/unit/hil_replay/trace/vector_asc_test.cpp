@@ -183,15 +183,25 @@ TEST(AscReader, InternalEventsHaveNoFrameAndAreCounted) {
                              " 0.3 SV: 1 0 1 ::Panel::Lamp 1.000000\n"
                              " 0.4 2 321 Rx d 2 0A 0B\n"
                              " 0.5 2  J1939TP EECx 3 2 0 - Rx d 9 * 00\n"
-                             " 0.6 CANFD 2 Status:chip status error passive\n";
+                             " 0.6 CANFD 2 Status:chip status error passive\n"
+                             " 0.7 Log trigger event\n"
+                             " 0.7 TFS: [0,0] begin of a group\n"
+                             " 0.7 Li 2d Rx 8 1 2 3 4 5 6 7 8 checksum = 9\n"
+                             " 0.7 L2 2d Rx 1 1\n"
+                             " 0.7 ETH 1 STAT Link:up\n"
+                             " 0.8 EnvLamp := 1\n"
+                             " 0.9 2 OverloadFrame\n";
     const auto reader = read_asc("t.asc", text, TraceOptions{});
     CanFrame frame;
     ASSERT_TRUE(reader->next(frame)) << reader->error();
     EXPECT_EQ(frame.id, 0x321U);
     EXPECT_FALSE(reader->next(frame));
     EXPECT_EQ(reader->error(), "");
-    EXPECT_EQ(reader->events(), 5U);
+    EXPECT_EQ(reader->events(), 12U);
     EXPECT_EQ(reader->skipped(), 0U) << "nothing is lost";
+    // A frame that looks like one of them is a frame.
+    EXPECT_EQ(one("0.7 2 0A1 Rx d 1 01").id, 0x0A1U);
+    EXPECT_NE(refusal("0.7 2 OverloadFrames").find("id: invalid value"), std::string::npos);
     // Another event is refused, and read over by the option that the message names.
     std::string error;
     const std::string other = kHeader + "0.1 Marker\n0.2 1 123 Rx d 0\n";
