@@ -1,10 +1,9 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Measures whether this computer can run a guard, and writes what it is into one file: board,
 kernel, clocks, driver of the CAN interface, doctor, wake-up latency and admission. It sends nothing
 on the bus, changes no setting, and names neither host nor user.
 
-Example: host_report.py can0 --machine machine.yaml --bus-cpu 3 --engine-cpu 2 --seconds 600"""
+Example: python3 host_report.py can0 --bus-cpu 3 --engine-cpu 2 --seconds 600"""
 import argparse
 import json
 import os
