@@ -118,7 +118,7 @@ constexpr ScalarKey<Owner> error_of(const char* key, const char* line, double mo
     row.when = KeyLine::unless_first;
     return row;
 }
-constexpr double kErrorMmMost = 100, kErrorDegMost = 10;
+constexpr double kErrorMmMost = kPoseErrorMmMax, kErrorDegMost = 1;
 constexpr std::array kJointKeys{
     error_of("direction_error_deg", "direction_error_rad", kErrorDegMost,
              &Joint::direction_error_rad, kDegrees),

@@ -20,6 +20,8 @@ inline constexpr double kCoordinateMmMax = 1.0e5;
 // Largest deviation of a simplified surface: both of a pair count as an error of the pose, of which
 // engines accept 1 mm.
 inline constexpr double kSimplifyMmMax = 0.4;
+// Of all errors of a query's pose: simplified surfaces, stated errors, skew. Engines refuse more.
+inline constexpr double kPoseErrorMmMax = 1.0;
 inline constexpr double kSkewMmMax = 0.15;  // of all axes together
 
 // Children a node, triangles a leaf: one warp, two AVX-512 lanes.

@@ -33,7 +33,8 @@ AXG_HD void set_frame(Frame& f, const Pose& p, double slack) noexcept {
 /// also fail the comparisons.
 AXG_HD bool usable(const Query& q) noexcept {
     bool good = is_finite(q.r_mm) && is_finite(q.pose_error_mm) && q.r_mm >= 0 &&
-                q.r_mm <= kMarginMmMax && q.pose_error_mm >= 0 && q.pose_error_mm <= 1.0;
+                q.r_mm <= kMarginMmMax && q.pose_error_mm >= 0 &&
+                q.pose_error_mm <= kPoseErrorMmMax;
     for (int i = 0; i < 3; ++i) {
         good = good && is_finite(q.pose.t[i]) && is_finite(q.pose.r[i][0]) &&
                is_finite(q.pose.r[i][1]) && is_finite(q.pose.r[i][2]);

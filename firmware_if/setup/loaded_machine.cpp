@@ -111,12 +111,15 @@ bool load(const std::string& file, const std::string& mesh_root, LoadedMachine& 
         part_cutters(read.machine, read.meshes);
         faults = simplify_meshes(read.machine, read.meshes);
     }
+    if (faults.empty()) {
+        read.machine.pose_errors = find_pose_errors(read.machine, read.meshes);
+        faults = pose_error_faults(read);
+    }
     if (!faults.empty()) {
         print(faults, file, messages);
         return false;
     }
     out = std::move(read);
-    out.machine.pose_errors = find_pose_errors(out.machine, out.meshes);
     prune_never_colliding(out, progress);
     return true;
 }

@@ -8,6 +8,7 @@
 #include "config/machine/machine_keys.hpp"
 #include "core/certificate/pair_queries.hpp"
 #include "core/certificate/pose_error.hpp"
+#include "core/machine/kinematics.hpp"
 
 namespace axg {
 namespace {
@@ -57,6 +58,32 @@ PoseErrors find_pose_errors(const Machine& machine, const MachineMeshes& meshes)
                                                       extent(pair.b), out.within));
         }
         out.mm.push_back(most_mm);
+    }
+    return out;
+}
+
+std::vector<ConfigFault> pose_error_faults(const LoadedMachine& loaded) {
+    const Machine& machine = loaded.machine;
+    std::vector<ConfigFault> out;
+    for (std::uint32_t i = 0; i < machine.pose_errors.mm.size(); ++i) {
+        const Pair& pair = machine.pairs[i];
+        double surfaces_mm = 0;
+        for (std::uint32_t k = 0; k < tasks_of(machine, pair); ++k) {
+            const std::uint32_t tool = has_tool(machine, pair) ? k : kNoIndex;
+            surfaces_mm = std::max(surfaces_mm, deviation_of(machine, pair.a, tool) +
+                                                    deviation_of(machine, pair.b, tool));
+        }
+        const double sum_mm = machine.pose_errors.mm[i] + surfaces_mm + kPlacementErrorMm;
+        if (!(sum_mm <= kPoseErrorMmMax)) {
+            out.push_back(
+                {loaded.source.file,
+                 fmt::format("pairs.{}-{}", machine.bodies[pair.a].name,
+                             machine.bodies[pair.b].name),
+                 fmt::format("{:.4g} mm of stated errors and simplified surfaces", sum_mm),
+                 fmt::format("at most {:g} mm; state smaller errors, and add the rest to "
+                             "margin_mm",
+                             kPoseErrorMmMax)});
+        }
     }
     return out;
 }

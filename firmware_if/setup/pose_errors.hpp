@@ -7,12 +7,16 @@
 #include <string>
 #include <vector>
 
+#include "config/text/config_fault.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
 
 namespace axg {
 
 /// For the machine's pairs, with the whole surfaces; the dearest tool counts. No errors stated: {}.
 [[nodiscard]] PoseErrors find_pose_errors(const Machine& machine, const MachineMeshes& meshes);
+
+/// One for each pair whose errors, with its simplified surfaces, are more than engines accept.
+[[nodiscard]] std::vector<ConfigFault> pose_error_faults(const LoadedMachine& loaded);
 
 struct PoseErrorPart {
     std::string key;  // "bodies.c.pivot_error_mm"

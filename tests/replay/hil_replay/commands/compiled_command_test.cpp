@@ -106,6 +106,25 @@ TEST_F(CompiledCommand, TellsWhatItWrote) {
     EXPECT_GT(said["triangles"], 100);
 }
 
+/// Engines accept 1 mm: more is an error of the machine file, not a machine without a permit.
+TEST_F(CompiledCommand, MoreErrorThanAnEngineAcceptsIsRefused) {
+    std::string text = test::content_of(test::kPaperMachine);
+    const std::size_t at = text.find("    pivot_mm:");
+    ASSERT_NE(at, std::string::npos);
+    text.insert(at, "    direction_error_deg: 0.5\n");
+    (void)shop->write("errors.yaml", text);
+    EXPECT_EQ(shop->run("check errors.yaml --mesh-root " + test::source_file("config/machines")),
+              kExitInput);
+    EXPECT_NE(shop->err.find("errors.yaml: pairs.cutter-c: invalid value (found 3."),
+              std::string::npos)
+        << shop->err;
+    EXPECT_NE(
+        shop->err.find(" mm of stated errors and simplified surfaces, expected at most 1 mm). "
+                       "State smaller errors, and add the rest to margin_mm.\n"),
+        std::string::npos)
+        << shop->err;
+}
+
 /// Stated errors cost the compiled machine the same, and the guard stops earlier for them.
 TEST_F(CompiledCommand, StatedErrorsCostTheSameAndStopEarlier) {
     std::string text = test::content_of(test::kPaperMachine);

@@ -44,7 +44,7 @@ TEST(MachineFaultsBodies, ErrorsOfAJointNeedTheJoint) {
         "without an axis, expected the key axis too, or a fixed body without this key).\n");
     EXPECT_EQ(faults_of(with(kSmallMachine, "{name: base, ", "{name: base, place_error_mm: -1, ")),
               "m:11: bodies.base.place_error_mm: invalid value (found \"-1\", expected a number "
-              "from 0 to 100).\n");
+              "from 0 to 1).\n");
 }
 
 TEST(MachineFaultsAxes, UnknownKindIsRefusedAlone) {
