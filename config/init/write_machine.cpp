@@ -321,6 +321,7 @@ std::string table_tool_text(const TableTool& tool) {
     const double drawn_mm = radius_mm > kThinMm ? radius_mm : 5;
     std::string text = fmt::format("  - number: {}  # {}\n", tool.number, tool.source);
     text += tool.comment.empty() ? "" : fmt::format("    name: {}\n", quoted(tool.comment, 100));
+    text += radius_mm > 0 ? fmt::format("    diameter_mm: {:.9g}\n", 2 * radius_mm) : "";
     return text + fmt::format(
                       "    length_mm: {0:.9g}  {2}: if the table counts from the spindle nose\n"
                       "    profile_mm: [[0, -{0:.9g}], [{1:.9g}, -{0:.9g}], [{1:.9g}, 0], [0, 0]]  "

@@ -132,6 +132,9 @@ void add_tools(Lines& lines, const Machine& machine) {
         lines.add(key + ".name", tool.name);
         lines.add(key + ".length_mm", {tool.length_mm});
         add_scalars(lines, key + ".", tool_keys(), tool);
+        if (tool.diameter_mm) {
+            lines.add(key + ".diameter_mm", {*tool.diameter_mm});
+        }
         add_pose(lines, key + ".at", tool.mesh.turns ? tool.mesh.at : tool.at);
         if (!tool.mesh.turns) {
             lines.add(key + ".turns", 0U);

@@ -76,8 +76,9 @@ void read_tool(const YamlEntry& item, std::size_t index, MachineDraft& draft) {
     const std::string path = tool_path(item.value, index);
     MapReader reader{item.value,
                      path,
-                     {"number", "name", "length_mm", "mesh", "profile_mm", "segments", "sections",
-                      "turns", "size_is_right", "at_mm", "rotate_deg", "place_error_mm"},
+                     {"number", "name", "length_mm", "diameter_mm", "mesh", "profile_mm",
+                      "segments", "sections", "turns", "size_is_right", "at_mm", "rotate_deg",
+                      "place_error_mm"},
                      draft.faults};
     Tool tool;
     std::uint32_t number = 0;
@@ -94,6 +95,11 @@ void read_tool(const YamlEntry& item, std::size_t index, MachineDraft& draft) {
     }
     reader.text("name", Need::optional, 128, tool.name);
     reader.number("length_mm", Need::required, {0, kCoordinateMmMax}, tool.length_mm);
+    double diameter_mm = 0;
+    if (reader.number("diameter_mm", Need::optional, {-kCoordinateMmMax, kCoordinateMmMax},
+                      diameter_mm)) {
+        tool.diameter_mm = diameter_mm;
+    }
     read_placement(reader, tool.at);
     read_scalars(reader, tool_keys(), tool, draft.machine.states);
     draft.machine.pose_errors.are_stated |= tool.place_error_mm > 0;

@@ -105,7 +105,8 @@ struct Body {
 struct Tool {
     std::uint16_t number = 0;
     std::string name;
-    double length_mm = 0;  // spindle nose to tip: G43's offset along the tool axis
+    double length_mm = 0;               // spindle nose to tip: G43's offset along the tool axis
+    std::optional<double> diameter_mm;  // G41's and G42's, of the control's tool table
     Pose at;  // tool mesh frame to the tool body's; identity if it turns (see MeshSource::at)
     double place_error_mm = 0;  // as of a body
     MeshSource mesh;

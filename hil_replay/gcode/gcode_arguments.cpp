@@ -42,7 +42,8 @@ bool read_work_offset(const std::string& text, const Machine& machine, GcodeOpti
     std::string fault = "expected a work offset and axis words, such as \"G54 X10 Z-50\"";
     for (std::size_t i = 0; i < kWorkOffsets; ++i) {
         if (text.substr(0, space) == kNames[i]) {
-            fault = read_axis_words(text.substr(space), machine, options.work_offsets[i]);
+            fault = read_axis_words(text.substr(space), machine, options.work_offsets[i],
+                                    &options.rotations_rad[i]);
         }
     }
     if (!fault.empty()) {

@@ -72,7 +72,7 @@ class BlockBuilder {
                "G4, G10, G64, arcs, canned cycles, M19, M50 to M53 and M62 to M66 take it");
         unused('Q', may_be_cycle || block_.code(path) == 640,
                "G64, G73, G83, M19 and M66 to M68 take it");
-        unused('D', false, "G96 takes it");
+        unused('D', block_.code(cutter) > 400, "G41 to G42.1 and G96 take it");
         unused('E', false, "M66 to M68 take it");
         unused('H', block_.code(tool_length) == 430 || block_.code(tool_length) == 434,
                "G43 and G43.4 take it");
@@ -91,7 +91,13 @@ class BlockBuilder {
     }
 
     void unused(char letter, bool is_taken, const char* who) {
-        if (block_.has(letter) && !is_taken && !is_setting_letter(block_, letter)) {
+        if (!block_.has(letter) || is_taken || is_setting_letter(block_, letter)) {
+            return;
+        }
+        if (!block_.ignored.empty() && block_.ignored[0][0] == 'M' &&
+            (letter == 'P' || letter == 'Q')) {
+            block_.letters[static_cast<std::size_t>(letter - 'A')].reset();  // the ignored word's
+        } else {
             fault(std::string(1, letter),
                   std::string("no word of this block takes it (") + who + ")");
         }

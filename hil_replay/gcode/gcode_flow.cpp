@@ -78,8 +78,14 @@ std::optional<FlowLine> read_flow_line(std::size_t line, std::string_view text,
         rest.remove_prefix(end + 1);
     } else {
         const std::size_t end = std::min(rest.find_first_not_of("0123456789"), rest.size());
+        if (const std::size_t call_at = rest.find("CALL"); end == 0 && call_at < rest.size()) {
+            out.word = FlowWord::call;
+            out.computed_id = std::string(rest.substr(0, call_at));
+            out.rest = std::string(rest.substr(call_at + 4));
+            return out;
+        }
         if (end == 0) {
-            fault = "expected a number or <name> after O; computed names are not supported";
+            fault = "expected a number or <name> after O; only calls may compute it";
             return std::nullopt;
         }
         const std::size_t zeros = std::min(rest.find_first_not_of('0'), end - 1);
@@ -133,7 +139,7 @@ std::vector<std::string> GcodeFlow::missing_subs(std::span<const std::string_vie
         const std::string text = flow_text(lines[i]);
         const std::optional<FlowLine> line =
             text.empty() ? std::nullopt : read_flow_line(i, text, fault);
-        if (line && (line->word == FlowWord::call || line->word == sub)) {
+        if (line && !line->id.empty() && (line->word == FlowWord::call || line->word == sub)) {
             (line->word == sub ? found : called).insert(line->id);
         }
     }
@@ -289,12 +295,29 @@ void GcodeFlow::run_sub(const FlowLine& at, std::size_t& next) {
     next = end->line + 1;
 }
 
+/// A whole number, as LinuxCNC has it: to 0.0001.
+std::string GcodeFlow::computed_id(const FlowLine& at) {
+    GcodeValueReader reader(at.computed_id, &parameters_);
+    const std::optional<double> value = reader.value();
+    const double nearest = std::round(value.value_or(-1));
+    if (!value || !reader.rest().empty() || nearest < 0 || nearest > 1e9 ||
+        std::abs(*value - nearest) > 1e-4) {
+        fault_ = "expected the number of a subroutine";
+        return {};
+    }
+    return std::to_string(static_cast<std::int64_t>(nearest));
+}
+
 void GcodeFlow::call(const FlowLine& at, std::size_t& next) {
-    const auto found = std::find_if(flow_.begin(), flow_.end(), [&at](const FlowLine& one) {
-        return one.word == sub && one.id == at.id;
+    const std::string id = at.computed_id.empty() ? at.id : computed_id(at);
+    if (id.empty()) {
+        return;
+    }
+    const auto found = std::find_if(flow_.begin(), flow_.end(), [&id](const FlowLine& one) {
+        return one.word == sub && one.id == id;
     });
     if (found == flow_.end()) {
-        fault_ = "there is no O" + at.id +
+        fault_ = "there is no O" + id +
                  " sub in this file; pass the folder that has a file of this name with --sub";
         return;
     }
@@ -372,7 +395,9 @@ void GcodeFlow::end_call(const FlowLine& at, std::size_t& next) {
     while (!frames_.empty() && !frames_.back().is_call()) {
         frames_.pop_back();  // loops that the return leaves
     }
-    if (frames_.empty() || frames_.back().start->word != sub || frames_.back().start->id != at.id) {
+    const bool is_any = at.word == return_;  // LinuxCNC does not ask for the sub's name there
+    if (frames_.empty() || frames_.back().start->word != sub ||
+        (!is_any && frames_.back().start->id != at.id)) {
         fault_ = "no call of O" + at.id + " is under way";
         return;
     }

@@ -43,7 +43,8 @@ struct FlowLine {
     std::size_t file = 0;  // 0: the program's own
     std::string id;
     FlowWord word = FlowWord::endif;
-    std::string rest;  // arguments, condition
+    std::string rest;              // arguments, condition
+    std::string computed_id = {};  // of a call: an expression instead of the id
 };
 
 class GcodeFlow {
@@ -85,6 +86,8 @@ class GcodeFlow {
     [[nodiscard]] bool read_condition(const FlowLine& at, bool& is_true);
     void pass_number();
     void run_sub(const FlowLine& at, std::size_t& next);
+    /// The number that a call computes; empty, and a fault, if it is none.
+    std::string computed_id(const FlowLine& at);
     void call(const FlowLine& at, std::size_t& next);
     void call_number(const FlowLine& at, std::size_t& next);
     void end_number(std::size_t& next);

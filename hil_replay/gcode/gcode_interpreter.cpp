@@ -29,6 +29,7 @@ GcodeInterpreter::GcodeInterpreter(const Machine& machine, const GcodeOptions& o
     state_.position = options.start;
     state_.spindle_tool = machine.first_tool;
     state_.work_offsets = options.work_offsets;
+    state_.rotations_rad = options.rotations_rad;
     state_.word_position = options.start;
     for (std::uint32_t axis = 0; axis < machine.axes.size(); ++axis) {
         state_.word_offset[axis] = offset_of(axis);
@@ -54,7 +55,7 @@ std::optional<double> GcodeInterpreter::parameter(std::uint32_t index) const {
     if (axis == kNoIndex) {
         return 0.0;
     }
-    if (state_.is_probed[axis]) {
+    if (state_.is_probed[axis] || cutter_.is_beside()) {
         return std::nullopt;  // only the machine knows
     }
     const bool is_rotary = machine_.axes[axis].kind == AxisKind::rotary;
@@ -63,6 +64,9 @@ std::optional<double> GcodeInterpreter::parameter(std::uint32_t index) const {
 
 void GcodeInterpreter::run(const GcodeBlock& block) {
     block_ = &block;
+    if (!is_contour_block()) {
+        return;
+    }
     set_feed_and_tool();
     change_tool();
     dwell();
@@ -193,7 +197,9 @@ void GcodeInterpreter::wait_for_input() {
 void GcodeInterpreter::wait(double seconds) {
     Move next = new_move(MoveKind::dwell);
     next.dwell_s = seconds;
-    push(next);
+    std::vector<Move> moves;
+    cutter_.add_pause(next, moves);
+    release(moves);
 }
 
 void GcodeInterpreter::set_modes() {
@@ -205,6 +211,7 @@ void GcodeInterpreter::set_modes() {
         state_.is_inch = block.code(units) == 200;
         state_.is_unit_of_start = false;
     }
+    set_cutter();
     set_tool_length();
     if (const std::int32_t code = block.code(offsets); code != -1) {
         state_.work_offset =
@@ -283,6 +290,9 @@ void GcodeInterpreter::use_start_unit(char letter) {
 }
 
 void GcodeInterpreter::stop() {
+    if (block_->code(ModalGroup::stop) != -1) {
+        flush_contour();
+    }
     switch (block_->code(ModalGroup::stop)) {
         case 0:
         case 10:

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Converts block after block to canonical moves. Modes and tools: gcode_interpreter.cpp; offsets:
 // gcode_offsets.cpp; tool centre point control: gcode_tip.cpp; motion: gcode_motion.cpp; canned
-// cycles: gcode_cycle.cpp; threads and probing: gcode_thread.cpp; saved modes:
-// gcode_modes.cpp.
+// cycles: gcode_cycle.cpp; threads and probing: gcode_thread.cpp; cutter compensation:
+// gcode_contour.cpp; saved modes: gcode_modes.cpp.
 #pragma once
 
 #include <optional>
@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "hil_replay/gcode/gcode_block.hpp"
+#include "hil_replay/gcode/gcode_cutter.hpp"
 #include "hil_replay/gcode/gcode_reader.hpp"
 #include "hil_replay/gcode/gcode_state.hpp"
 #include "hil_replay/gcode/gcode_travel.hpp"
@@ -29,6 +30,8 @@ class GcodeInterpreter {
     /// A skipped block may have set F: later blocks then report no missing feed.
     void skip_block() { state_.is_feed_unknown = true; }
     [[nodiscard]] bool has_ended() const { return state_.has_ended; }
+    /// Moves of cutter compensation wait for a next one, and LinuxCNC would not run them.
+    [[nodiscard]] bool is_contour_open() const { return cutter_.is_beside(); }
     /// Value of a numbered parameter of the control: 5220 the active work offset, 5400 the tool in
     /// the spindle, 5420 to 5428 the axis positions in the program's units and offsets.
     [[nodiscard]] std::optional<double> parameter(std::uint32_t index) const;
@@ -54,6 +57,18 @@ class GcodeInterpreter {
     [[nodiscard]] const Tool* find_tool(std::uint16_t number) const;
     void change_tool();
     void dwell();
+    /// G40 to G42.1.
+    void set_cutter();
+    void begin_contour(const std::string& word);
+    /// Nothing, and a fault, if the diameter that G41 or G42 takes is unknown.
+    std::optional<double> cutter_diameter(const std::string& word);
+    /// False, and a fault, if the block has a word that cutter compensation does not go with.
+    bool is_contour_block();
+    /// Adds a programmed move; what comes out are moves of the tool's centre.
+    void follow_contour(Move next);
+    /// The moves that wait, before a stop or the end of compensation.
+    void flush_contour();
+    void release(std::vector<Move>& moves);
     void save_modes();
     void restore_modes(const GcodeState& saved);
     void wait_for_input();
@@ -95,6 +110,8 @@ class GcodeInterpreter {
     void probe();
     /// True, and a fault, if a sum with the position of this axis depends on what was probed.
     bool is_unknown_after_probe(char letter, std::uint32_t axis);
+    /// The same for the start of an arc or of a compensated contour, in the plane.
+    bool is_unknown_arc();
     [[nodiscard]] double arc_center(char center_letter, char axis_letter) const;
     /// G28, G30: moves to the words, if any, then the named axes, or all, to the stored position.
     void go_home();
@@ -116,10 +133,12 @@ class GcodeInterpreter {
     void stop();
     /// The present axis positions in the coordinates of `position`.
     [[nodiscard]] AxisPositions standing_at() const;
+    /// The same, under cutter compensation the programmed position.
+    [[nodiscard]] AxisPositions programmed_at() const;
     [[nodiscard]] Move new_move(MoveKind kind) const;
     void append(Move next);
     /// Gives axes that would move by rounding only the position that they have.
-    void settle(AxisPositions& target) const;
+    void settle(AxisPositions& target, const AxisPositions& from) const;
     /// Adds a move to the program; with too many moves adds a fault and ends the program instead.
     void push(const Move& next);
     [[nodiscard]] double scale() const { return state_.is_inch ? 25.4 : 1.0; }  // mm per unit
@@ -134,6 +153,10 @@ class GcodeInterpreter {
     };
     std::vector<std::optional<SavedModes>> saved_modes_{1};  // by depth of call
     TravelWatch travel_;
+    CutterPath cutter_;
+    // Under cutter compensation the programmed position in the plane, as LinuxCNC adds the words of
+    // the program; NaN: its start is not known to the last digit.
+    std::array<double, 2> contour_words_{};
     std::optional<TipControl> tip_control_;  // made when a program first switches it on
     std::vector<std::uint32_t> unruled_;     // axes whose missing rule was reported
     const GcodeBlock* block_ = nullptr;

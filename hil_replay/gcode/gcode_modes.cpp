@@ -39,6 +39,10 @@ void GcodeInterpreter::set_call_depth(std::size_t depth, std::uint32_t line) {
 /// The motion mode is not restored, as in LinuxCNC. Its G43 and G92.3 would count from the tool and
 /// the offset of now.
 void GcodeInterpreter::restore_modes(const GcodeState& saved) {
+    if (cutter_.is_on()) {
+        fault("M72", "modes are restored under cutter compensation; write G40 before it");
+        return;
+    }
     if (saved.tool_offset != state_.tool_offset || saved.local_offset != state_.local_offset ||
         saved.control != state_.control) {
         fault("M72", "the tool offset, G52 or G92 changed since M70 or M73; write their words");

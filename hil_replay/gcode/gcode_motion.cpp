@@ -73,6 +73,11 @@ void GcodeInterpreter::move() {
                                       [&](char letter) { return block.has(letter); });
     const bool is_threading = is_thread(state_.motion);
     const bool has_arc = has_arc_word(block, state_.motion);
+    if (cutter_.is_on() && state_.motion > 30 && state_.motion != 800 &&
+        (written != -1 || has_axis)) {
+        fault("G41", "cutter compensation goes with G0 to G3 only; write G40 before");
+        return;
+    }
     const bool is_arc_mode = state_.motion == 20 || state_.motion == 30;
     if (is_cycle && (written != -1 || has_axis || has_arc)) {
         run_cycle(last_motion, has_axis);
@@ -107,8 +112,15 @@ void GcodeInterpreter::move() {
         is_threading ? run_thread() : probe();
         return;
     }
+    if (is_arc_mode && is_unknown_arc()) {
+        return;
+    }
     Move next = new_move(is_arc_mode ? MoveKind::arc : MoveKind::line);
     if (!set_target(next.target) || !set_feed(next) || (is_arc_mode && !set_arc(next))) {
+        return;
+    }
+    if (cutter_.is_on() && cutter_.settings().radius_mm > 0) {
+        follow_contour(next);
         return;
     }
     append(next);
@@ -143,7 +155,7 @@ bool GcodeInterpreter::set_target(AxisPositions& target) {
     }
     set_rotated_target(target);
     if (state_.motion != 20 && state_.motion != 30) {  // an arc judges its ends together
-        settle(target);
+        settle(target, programmed_at());
     }
     return result_.faults.size() == faults_before;
 }
@@ -233,8 +245,7 @@ double GcodeInterpreter::wrapped_target(char letter, std::uint32_t axis, double 
     return result * kRadPerDegree + offset;
 }
 
-void GcodeInterpreter::settle(AxisPositions& target) const {
-    const AxisPositions from = standing_at();
+void GcodeInterpreter::settle(AxisPositions& target, const AxisPositions& from) const {
     for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
         const bool is_rotary = machine_.axes[i].kind == AxisKind::rotary;
         if (std::abs(target[i] - from[i]) < (is_rotary ? kSamePlaceRad : kSamePlaceMm)) {
@@ -276,7 +287,7 @@ bool GcodeInterpreter::set_feed(Move& next) {
     bool moves_linear = state_.motion != 10;
     for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
         moves_linear = moves_linear || (machine_.axes[i].kind == AxisKind::linear &&
-                                        next.target[i] != standing_at()[i]);
+                                        next.target[i] != programmed_at()[i]);
     }
     next.feed_kind = FeedKind::per_minute;
     next.feed = feed_per_minute(moves_linear);
@@ -356,10 +367,10 @@ bool GcodeInterpreter::set_arc(Move& next) {
         refuse_rotated(word);
         return false;
     }
-    if (state_.standing_at) {
+    if (state_.standing_at && !cutter_.is_beside()) {
         fault(word,
-              "the tool offset changed under tool centre point control, and the arc would not "
-              "begin where the tip is; write G0 or G1 before it");
+              "after G40, and where the tool offset changed under tool centre point control, the "
+              "arc would not begin where the tip is; write G0 or G1 before it");
         return false;
     }
     ArcWords words;
@@ -461,6 +472,10 @@ AxisPositions GcodeInterpreter::standing_at() const {
     return state_.standing_at.value_or(state_.position);
 }
 
+AxisPositions GcodeInterpreter::programmed_at() const {
+    return cutter_.is_beside() ? state_.position : standing_at();
+}
+
 Move GcodeInterpreter::new_move(MoveKind kind) const {
     Move next;
     next.kind = kind;
@@ -475,7 +490,7 @@ Move GcodeInterpreter::new_move(MoveKind kind) const {
 }
 
 void GcodeInterpreter::append(Move next) {
-    settle(next.target);
+    settle(next.target, standing_at());
     travel_.check(machine_, result_.program, standing_at(), next, result_.faults);
     const bool is_still = next.kind == MoveKind::line && next.target == standing_at();
     state_.position = next.target;

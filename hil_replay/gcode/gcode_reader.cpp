@@ -95,6 +95,11 @@ class Reading {
                 return;
             }
         }
+        if (!interpreter_.has_ended() && interpreter_.is_contour_open()) {
+            fault(std::min(next, own_lines_) - 1, "G40",
+                  "the program ends under cutter compensation, and LinuxCNC would not finish its "
+                  "last move; end it with G40, M2 or M30");
+        }
         if (!has_ended() && flow_.is_in_call()) {
             fault(std::min(next, own_lines_) - 1, "O",
                   "the file ends inside a subroutine; end it with endsub, or M99 after M98");
@@ -342,13 +347,17 @@ GcodeResult read_gcode(std::string_view text, const Machine& machine, const Gcod
     return result;
 }
 
-std::string read_axis_words(std::string_view text, const Machine& machine,
-                            AxisPositions& positions) {
+std::string read_axis_words(std::string_view text, const Machine& machine, AxisPositions& positions,
+                            double* rotation_rad) {
     const GcodeLine line = lex_gcode_line(text);
     if (!line.fault.empty()) {
         return line.fault_word + ": " + line.fault;
     }
     for (const GcodeWord& word : line.words) {
+        if (word.letter == 'R' && rotation_rad != nullptr) {
+            *rotation_rad = word.number * kRadPerDegree;
+            continue;
+        }
         const std::uint32_t axis = axis_of_letter(machine, word.letter);
         if (axis == kNoIndex) {
             return word.text + ": the machine has no axis of this name";

@@ -30,6 +30,7 @@ enum class BlockDelete : std::uint8_t {
 struct GcodeOptions {
     AxisPositions start{};                                   // inside travel, mm or rad
     std::array<AxisPositions, kWorkOffsets> work_offsets{};  // mm or rad, zero unless stated
+    std::array<double, kWorkOffsets> rotations_rad{};        // of X and Y about Z
     std::vector<std::string> sub_folders;                    // of subroutines in files of their own
     std::vector<std::string> ignored;  // "M428": words to skip, reported in the result
     std::vector<std::pair<std::uint16_t, std::uint16_t>>
@@ -74,8 +75,9 @@ struct GcodeResult {
 
 /// Reads axis words such as "X0 Y-10.5 C90" (mm and degrees) into `positions`. Returns an empty
 /// text on success, else the fault.
+/// @param rotation_rad  of a word R; nullptr: R is a fault
 [[nodiscard]] std::string read_axis_words(std::string_view text, const Machine& machine,
-                                          AxisPositions& positions);
+                                          AxisPositions& positions, double* rotation_rad = nullptr);
 
 /// Zero for every axis, or the nearest end of its travel if zero is outside.
 [[nodiscard]] AxisPositions default_start(const Machine& machine);

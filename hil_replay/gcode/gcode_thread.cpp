@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lines that end where the spindle or a probe decides: G33, G33.1, G38.2 to G38.5, read to their
 // programmed end. Source: LinuxCNC "G-codes"; interp_convert.cc (2.9), convert_probe.
+#include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "core/base/sincos.hpp"
 #include "hil_replay/gcode/gcode_interpreter.hpp"
@@ -67,6 +69,14 @@ void GcodeInterpreter::probe() {
         state_.is_probed[i] = state_.is_probed[i] || next.target[i] != state_.position[i];
     }
     append(next);
+}
+
+bool GcodeInterpreter::is_unknown_arc() {
+    const std::string_view letters = state_.plane == 170 ? "XY" : state_.plane == 180 ? "ZX" : "YZ";
+    return std::any_of(letters.begin(), letters.end(), [this](char letter) {
+        const std::uint32_t axis = axis_of_letter(machine_, letter);
+        return axis != kNoIndex && is_unknown_after_probe(letter, axis);
+    });
 }
 
 bool GcodeInterpreter::is_unknown_after_probe(char letter, std::uint32_t axis) {

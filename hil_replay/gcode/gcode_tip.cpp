@@ -113,7 +113,7 @@ void GcodeInterpreter::change_coordinates(const AxisPositions& offset, bool is_c
     if (was_controlled && is_controlled) {
         state_.standing_at = state_.position;
         state_.position = programmed;  // no word changed the programmed position of the tip
-        settle(state_.position);
+        settle(state_.position, standing_at());
         if (state_.position == *state_.standing_at) {
             state_.standing_at.reset();
         }

@@ -8,7 +8,6 @@ using enum ModalGroup;
 using enum WordSupport;
 
 constexpr std::string_view kByHand = "boring that an operator ends by hand";
-constexpr std::string_view kCompensation = "cutter compensation; post the tool centre's path";
 constexpr std::string_view kProbe = "probing, read to its end";
 constexpr std::string_view kSpline = "spline; post it as lines or arcs";
 constexpr std::string_view kHomeWrite = "stores a position; use G53 G0";
@@ -47,11 +46,11 @@ constexpr GcodeWordRule kRules[] = {
     {'G', 383, motion, read, kProbe},
     {'G', 384, motion, read, kProbe},
     {'G', 385, motion, read, kProbe},
-    {'G', 400, cutter, no_motion, "cutter compensation off: it is never on"},
-    {'G', 410, cutter, refused, kCompensation},
-    {'G', 411, cutter, refused, kCompensation},
-    {'G', 420, cutter, refused, kCompensation},
-    {'G', 421, cutter, refused, kCompensation},
+    {'G', 400, cutter, read, "cutter compensation off"},
+    {'G', 410, cutter, read, "tool left of the contour, diameter from the machine file"},
+    {'G', 411, cutter, read, "tool left of the contour, diameter D"},
+    {'G', 420, cutter, read, "tool right of the contour, diameter from the machine file"},
+    {'G', 421, cutter, read, "tool right of the contour, diameter D"},
     {'G', 430, tool_length, read, "tool length from the machine file"},
     {'G', 431, tool_length, read, "tool offset by words"},
     {'G', 432, tool_length, refused, "sum of tool offsets"},

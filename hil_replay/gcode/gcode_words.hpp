@@ -18,7 +18,7 @@ enum class ModalGroup : std::uint8_t {
     arc_distance,  // G90.1 G91.1
     feed_mode,     // G93 G94 G95
     units,         // G20 G21
-    cutter,        // G40
+    cutter,        // G40 to G42.1
     tool_length,   // G43 G43.1 G43.4 G49
     offsets,       // G54..G59.3
     path,          // G61 G64

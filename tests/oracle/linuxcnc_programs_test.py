@@ -37,7 +37,8 @@ def expected_of(program):
 def said_by_rs274(program, folder):
     options = ["-i", "test.ini"] if program.with_name("test.ini").exists() else []
     tools = pathlib.Path(folder, rs274.TOOLS)  # without lengths, as those of PRINT_MOVES
-    tools.write_text("".join(f"T{n} P{n} Z0\n" for n in rs274.TOOL_NUMBERS), encoding="ascii")
+    tools.write_text("".join(f"T{n} P{n} Z0 D{rs274.DIAMETER_MM / rs274.INCH:.9f}\n"
+                             for n in rs274.TOOL_NUMBERS), encoding="ascii")
     options += ["-t", tools]
     try:
         done = subprocess.run(["rs274", *options, "-g", program.name], stdout=subprocess.PIPE,

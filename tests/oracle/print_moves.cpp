@@ -31,6 +31,7 @@ Machine boundless_machine() {
     }
     for (const std::uint16_t number : std::initializer_list<std::uint16_t>{1, 8, 21, 48, 52, 150}) {
         machine.tools.emplace_back().number = number;
+        machine.tools.back().diameter_mm = 6;  // DIAMETER_MM of rs274_test.py
     }
     machine.first_tool = 1;
     return machine;

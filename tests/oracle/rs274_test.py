@@ -21,6 +21,7 @@ TOLERANCE = 2.6e-3  # mm: it prints 1e-4 of an inch or mm
 CYCLES = ("G73", "G81", "G82", "G83", "G84", "G85", "G86", "G89")
 TOOLS = "tools.tbl"
 TOOL_NUMBERS = (1, 8, 21, 48, 52, 150)
+DIAMETER_MM = 6  # of all these (print_moves.cpp)
 INCH = 25.4  # mm: the unit of its tool table
 TIP_TOOLS = {1: 50, 2: 80}  # mm, of tests/support/motion_machine.hpp
 # Words of another machine's configuration: neither side is asked about them.
@@ -35,13 +36,15 @@ class Canon:
         self.unit = 1.0
         self.offsets = {"g5x": [0.0] * 6, "g92": [0.0] * 6, "tool": [0.0] * 6}
         self.motions = []
-        self.plane = "XY"
+        self.plane, self.rotation = "XY", 0.0
 
     def machine(self, values):
-        """Offsets were given in the unit that was on then, so they are kept in mm."""
+        """Offsets were given in the unit that was on then, so they are kept in mm. G92's turns."""
         scaled = [v * (self.unit if i < 3 else 1) for i, v in enumerate(values)]
-        return [v + sum(offset[i] for offset in self.offsets.values())
-                for i, v in enumerate(scaled)]
+        x, y, *others = [v + g92 for v, g92 in zip(scaled, self.offsets["g92"])]
+        cos, sin = math.cos(self.rotation), math.sin(self.rotation)
+        turned = [x * cos - y * sin, x * sin + y * cos, *others]
+        return [v + self.offsets["g5x"][i] + self.offsets["tool"][i] for i, v in enumerate(turned)]
 
     def in_mm(self, values):
         return [v * (self.unit if i < 3 else 1) for i, v in enumerate(values)]
@@ -53,6 +56,8 @@ class Canon:
             self.plane = text[-2:]
         elif name == "SET_G5X_OFFSET":
             self.offsets["g5x"] = self.in_mm([float(v) for v in text.split(",")[1:]])
+        elif name == "SET_XY_ROTATION":
+            self.rotation = math.radians(float(text))
         elif name == "SET_G92_OFFSET":
             self.offsets["g92"] = self.in_mm([float(v) for v in text.split(",")])
         elif name == "USE_TOOL_LENGTH_OFFSET":
@@ -340,6 +345,75 @@ def compare_turns(print_moves, program, rng, count):
     return faults
 
 
+def reached_arcs(rng, count, is_tip):
+    """Full and nearly full arcs from starts that the program reaches in many ways, and the angle
+    that each has by its words. Under tool centre point control LinuxCNC has the same targets."""
+    is_inch, lines, sweeps = rng.random() < 0.3, [], []
+    lines.append(f"G{20 if is_inch else 21} G90 G94 F100")
+    if is_tip:
+        lines.append("M428")
+    for _ in range(count):
+        plane = 17 if is_tip else rng.choice((17, 18, 19))
+        first, second, i, j = {17: "XYIJ", 18: "ZXKI", 19: "YZJK"}[plane]
+        start = [rng.randint(-200000, 200000) for _ in range(2)]  # in 1e-4 of the unit
+        words = lambda at: f"{first}{at[0] / 1e4:.4f} {second}{at[1] / 1e4:.4f}"
+        part = [rng.randint(-90000, 90000) for _ in range(2)]
+        rest = [a - b for a, b in zip(start, part)]
+        way = rng.choice(("absolute", "steps", "machine", "G92", "G10"))
+        lines += {
+            "absolute": lambda: [f"G0 {words(start)}"],
+            "steps": lambda: [f"G0 {first}0 {second}0", f"G91 G0 {words(part)}",
+                              f"G0 {words(rest)}", "G90"],
+            "machine": lambda: [f"G53 G0 {words(start)}"],
+            "G92": lambda: [f"G0 {words(part)}", f"G92 {words(rest)}", f"G0 {words(start)}"],
+            "G10": lambda: [f"G0 {words(part)}", f"G10 L20 P1 {words(start)}"],
+        }[way]()
+        radius, at_rad = rng.uniform(1e4, 3e5), rng.uniform(0, 6.3)
+        off = [round(radius * math.cos(at_rad)), round(radius * math.sin(at_rad))]
+        centre = [a + b for a, b in zip(start, off)]
+        turned = rng.choice((0, 0, 1, -1)) * 10 ** rng.uniform(0, 3.7) / radius
+        out = [-v for v in off]
+        end = [round(centre[0] + out[0] * math.cos(turned) - out[1] * math.sin(turned)),
+               round(centre[1] + out[0] * math.sin(turned) + out[1] * math.cos(turned))]
+        to = [a - b for a, b in zip(end, centre)]
+        sweep = math.atan2(out[0] * to[1] - out[1] * to[0], out[0] * to[0] + out[1] * to[1])
+        is_clockwise = rng.random() < 0.5
+        sweep += (-2 * math.pi if sweep >= 0 else 0) if is_clockwise else (
+            2 * math.pi if sweep <= 0 else 0)
+        sweeps.append(sweep)
+        is_bare = end == start and rng.random() < 0.5
+        lines.append(f"G{plane} G{2 if is_clockwise else 3} {'' if is_bare else words(end)} "
+                     f"{i}{off[0] / 1e4:.4f} {j}{off[1] / 1e4:.4f}")
+        lines.append("G92.1 G0 X0" if way != "G10" else "G10 L2 P1 X0 Y0 Z0")
+    return "\n".join(lines + ["M2", ""]), sweeps
+
+
+def compare_reached(print_moves, program, rng, count):
+    """The faults of `count` arcs, a hundred a program."""
+    faults, size = [], min(count, 100)
+    for number in range(-(-count // size)):
+        is_tip = number % 6 == 5
+        text, sweeps = reached_arcs(rng, size, is_tip)
+        pathlib.Path(program).write_text(text, encoding="ascii")
+        options = ["--tip"] if is_tip else []
+        ours, why = of_axguard(print_moves, program, *options)
+        done = subprocess.run([print_moves, *options, program], stdout=subprocess.PIPE,
+                              stderr=subprocess.DEVNULL, text=True, check=False)
+        angles = [float(line.split()[-1]) for line in done.stdout.splitlines()
+                  if line.startswith("arc")]
+        pathlib.Path(program).write_text(LEFT_OUT.sub("", text), encoding="ascii")
+        theirs = of_linuxcnc(program)
+        if ours is None or theirs is None:
+            faults.append(f"arcs {number}: {why.splitlines()[:1] or 'they refuse them'}")
+        elif difference(ours, theirs):
+            faults.append(f"arcs {number}: {difference(ours, theirs)}")
+        faults += [f"arcs {number}: {ours_rad} rad, by the words {words_rad}"
+                   for ours_rad, words_rad in zip(angles, sweeps)
+                   if abs(ours_rad - words_rad) > 1e-6]
+    print(f"{count} full and nearly full arcs, {len(faults)} unlike LinuxCNC's")
+    return faults
+
+
 def main():
     print_moves, gcode = sys.argv[1], pathlib.Path(sys.argv[2])
     if shutil.which("rs274") is None:
@@ -398,6 +472,7 @@ def main():
                 break
         random_accepted = accepted
         faults += compare_turns(print_moves, program, rng, count)
+        faults += compare_reached(print_moves, program, rng, count)
         pathlib.Path(folder, "wrapped.ini").write_text(
             "[EMC]\nVERSION=1.1\n[RS274NGC]\nPARAMETER_FILE = none.var\n" +
             "".join(f"[AXIS_{letter}]\nWRAPPED_ROTARY = 1\n" for letter in "ABC"),

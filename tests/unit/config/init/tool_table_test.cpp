@@ -104,6 +104,7 @@ TEST(ToolTable, InitWritesTheToolsOfTheTable) {
         << text;
     EXPECT_NE(
         text.find("tools:\n  - number: 1  # tool.tbl:2\n    name: \"1/4 end mill\"\n"
+                  "    diameter_mm: 6.35\n"
                   "    length_mm: 63.5  # GUESS: if the table counts from the spindle nose\n"
                   "    profile_mm: [[0, -63.5], [3.175, -63.5], [3.175, 0], [0, 0]]  # GUESS: "
                   "add shank and holder\n"),

@@ -130,7 +130,8 @@ TEST(EffectiveYaml, StatesEveryKeyOfTheSchema) {
             const std::size_t name = at + mark.size();
             const std::string key = part.substr(name, part.find('"', name) - name);
             const bool is_tools_choice = key == "profile_mm" || key == "sections" ||
-                                         key == "segments" || key == "axis" || key == "pivot_mm";
+                                         key == "segments" || key == "axis" || key == "pivot_mm" ||
+                                         key == "diameter_mm";
             EXPECT_TRUE(is_tools_choice || all.find(' ' + key + ':') != std::string::npos)
                 << section << ' ' << key;
             ++keys;

@@ -125,6 +125,14 @@ TEST(GcodeFlow, WrongOnesSayWhatAndEndTheReading) {
     expect_fault("o1 repeat [2]\n", "there is no O1 endrepeat");
     expect_fault("o1 break\n", "no loop O1 is under way");
     expect_fault("o1 spin\n", "expected sub, call, return");
+    expect_fault("o1 return\n", "no call of O1 is under way");
+    EXPECT_EQ(end_of("o1 sub\no2 if [1]\no2 return [3]\no2 endif\no1 endsub\no1 call\n"
+                     "G0 X#<_value>\n")[kX],
+              3)
+        << "LinuxCNC takes any name";
+    EXPECT_EQ(end_of("o7 sub\nG0 X#1\no7 endsub\n#2 = 3\no[#2 + 4] call [5]\n")[kX], 5);
+    expect_fault("o[1.5] call\n", "expected the number of a subroutine");
+    expect_fault("o[8] call\n", "there is no O8 sub");
     expect_fault("o[1] sub\n", "expected a number or <name> after O");
     expect_fault("o<a call\n", "expected a name and '>'");
     expect_fault("G0 X1 o1 call\n", "O: an O-word is only allowed at the start of a line");
