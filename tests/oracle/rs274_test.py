@@ -26,7 +26,7 @@ INCH = 25.4  # mm: the unit of its tool table
 TIP_TOOLS = {1: 50, 2: 80}  # mm, of tests/support/motion_machine.hpp
 # Words of another machine's configuration: neither side is asked about them.
 LEFT_OUT = re.compile(r"(?i)\bM42[89]\b")
-CALL = re.compile(r"N\S*\s+(\w+)\(([^)]*)\)")
+CALL = re.compile(r"N[\d.]+\s*([A-Z]\w*)\(([^)]*)\)")
 
 
 class Canon:
