@@ -223,12 +223,14 @@ std::string CutterPath::meet_line(PlanePoint corner, PlanePoint way, PlanePoint&
     const Move& arc = waiting_.front().move;
     const PlanePoint center = center_of(arc), side = to_side(way);
     const double radius = length(at(arc.target) - center);
-    const double across = dot(corner - center, side) + settings_.radius_mm;
+    const bool is_before = is_inside(arc.arc.sweep_rad);
+    // As LinuxCNC: the first arc's centre may be on the other side of its end.
+    const double programmed = radius + (is_before ? 1 : -1) * settings_.radius_mm;
+    const double across = programmed * dot(unit(corner - center), side) + settings_.radius_mm;
     if (std::abs(across) > radius) {
         return kGouge;
     }
     const double along = std::sqrt((radius - across) * (radius + across));
-    const bool is_before = is_inside(arc.arc.sweep_rad);
     meet = center + across * side + (is_before ? -along : along) * unit(way);
     return {};
 }
