@@ -51,7 +51,7 @@ bool read_line(std::string_view line, double unit_mm, TableTool& out, std::strin
             has_number = *value >= 0 && *value < 1e6 && *value == std::floor(*value);
             out.number = has_number ? static_cast<std::uint32_t>(*value) : 0;
         } else if (letter == 'D') {
-            out.diameter_mm = unit_mm * std::fabs(*value);  // a minus is a turning tool's
+            out.diameter_mm = unit_mm * *value;  // below 0 G41 runs on the other side
         } else if (letter == 'Z') {
             out.length_mm = unit_mm * *value;
         } else if (kOffsets.find(letter) != std::string_view::npos) {
@@ -90,7 +90,8 @@ void compare(const TableTool& row, const Tool& tool, std::vector<std::string>& o
                                   where, row.length_mm, tool.length_mm, other));
     }
     const std::optional<double> radius = cutting_radius(tool);
-    if (radius && row.diameter_mm && std::fabs(*row.diameter_mm - 2 * *radius) > kSameMm) {
+    if (radius && row.diameter_mm &&
+        std::fabs(std::fabs(*row.diameter_mm) - 2 * *radius) > kSameMm) {
         out.push_back(fmt::format("{}diameter {:.6g} mm, and {:.6g} mm in {}. Correct one of them.",
                                   where, *row.diameter_mm, 2 * *radius, other));
     }

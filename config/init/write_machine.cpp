@@ -133,8 +133,8 @@ constexpr const char* kOverIniHead =
 constexpr const char* kGantryHead =
     R"(# skew_mm: so far two joints of one axis may be apart, at least twice following_error_mm. The
 # proof allows for it, and axguard_stop, loaded with coordinates= of KINEMATICS, gives no permit
-# beyond it.
-)";
+# beyond it. Points farther from the middle than the rails are apart it does not cover.
+);
 
 /// The guessed deceleration of a stop, with its price: so much longer is the stop from full speed
 /// if only half of it is true. LinuxCNC brakes each joint by its MAX_ACCELERATION.
@@ -317,11 +317,11 @@ std::string table_tool_text(const TableTool& tool) {
         return fmt::format("  # {}: tool {} has no length above 0: measure it\n", tool.source,
                            tool.number);
     }
-    const double radius_mm = tool.diameter_mm.value_or(0) / 2;
+    const double radius_mm = std::fabs(tool.diameter_mm.value_or(0)) / 2;
     const double drawn_mm = radius_mm > kThinMm ? radius_mm : 5;
     std::string text = fmt::format("  - number: {}  # {}\n", tool.number, tool.source);
     text += tool.comment.empty() ? "" : fmt::format("    name: {}\n", quoted(tool.comment, 100));
-    text += radius_mm > 0 ? fmt::format("    diameter_mm: {:.9g}\n", 2 * radius_mm) : "";
+    text += radius_mm > 0 ? fmt::format("    diameter_mm: {:.9g}\n", *tool.diameter_mm) : "";
     return text + fmt::format(
                       "    length_mm: {0:.9g}  {2}: if the table counts from the spindle nose\n"
                       "    profile_mm: [[0, -{0:.9g}], [{1:.9g}, -{0:.9g}], [{1:.9g}, 0], [0, 0]]  "

@@ -114,6 +114,10 @@ void GcodeInterpreter::begin_contour(const std::string& word) {
         wrong = "conflicts with G93; write G94 before it";
     } else if (!is_xy && is_rotated()) {
         wrong = "not supported with G18 in a rotated work offset";
+    } else if (!is_xy && block_->code(cutter) % 10 == 0) {
+        wrong =
+            "depends with G18 on the orientation in the control's tool table; write G41.1 or "
+            "G42.1 and D";
     }
     if (!wrong.empty()) {
         fault(word, wrong);

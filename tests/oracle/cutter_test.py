@@ -79,8 +79,10 @@ def contour_program(rng):
 
     for _ in range(rng.randint(1, 2)):
         diameter = rng.choice((0.5, 2, 6, -3)) * unit
-        lines.append(rng.choice((
-            "G41", "G42", "G41 D1", "G42 D1", f"G41.1 D{diameter:.5f}", f"G42.1 D{diameter:.5f}")))
+        stated = (f"G41.1 D{diameter:.5f}", f"G42.1 D{diameter:.5f}")
+        # With G18 the table's orientation of a turning tool counts, which is not read.
+        lines.append(rng.choice(
+            stated if plane == 18 else ("G41", "G42", "G41 D1", "G42 D1", *stated)))
         size, heading = rng.choice((3, 15, 40)), rng.uniform(0, 6.28)
         for step in range(rng.randint(2, 9)):
             kind = rng.random()

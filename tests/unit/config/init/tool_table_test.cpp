@@ -32,6 +32,7 @@ TEST(ToolTable, WordsAreReadInAnyOrderAndUnit) {
     EXPECT_EQ(first.source, "tool.tbl:2");
     EXPECT_EQ(table.tools[1].number, 4U);
     EXPECT_FALSE(table.tools[1].diameter_mm);
+    EXPECT_DOUBLE_EQ(read_tool_table("T2 Z4 D-6", "t.tbl", 1).tools.at(0).diameter_mm.value(), -6);
     EXPECT_FALSE(is_measured(table.tools[2]));
     EXPECT_TRUE(table.tools[3].has_other_offset);
 }
@@ -73,6 +74,7 @@ TEST(ToolTable, EveryDifferenceIsOneLine) {
         return out;
     };
     EXPECT_EQ(lines("T1 Z50 D6", 50), "");
+    EXPECT_EQ(lines("T1 Z50 D-6", 50), "") << "as wide; G41 runs on the other side";
     EXPECT_EQ(lines("T1 Z50 D6", 50.001), "") << "the last that is the same";
     EXPECT_EQ(lines("T1 Z50 D6", 50.0011),
               "t.tbl:1: tool 1: length 50 mm, and 50.0011 mm in m.yaml:40. Correct one of them.\n");

@@ -82,6 +82,8 @@ TEST(GcodeCutter, EveryRefusalNamesItsReason) {
               std::string::npos);
     EXPECT_NE(refused("G41.1\n").find("G41.1: expected D, the diameter"), std::string::npos);
     EXPECT_NE(refused("G19 G41.1 D1\n").find("expected linear axes X and Y"), std::string::npos);
+    EXPECT_NE(refused("G18 G41 D1\n").find("orientation in the control's tool table; write G41.1"),
+              std::string::npos);
     EXPECT_NE(refused("G93 F9\nG41.1 D1\n").find("conflicts with G93"), std::string::npos);
     EXPECT_NE(refused("M428\nG41.1 D1\n").find("tool centre point control"), std::string::npos);
     EXPECT_NE(refused("G38.2 X9 F9\nG41.1 D1 G1 Y9\n").find("where a probe stopped"),
