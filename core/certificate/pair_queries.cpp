@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/certificate/pair_queries.hpp"
 
+#include <cmath>
 #include <cstddef>
+#include <span>
 
 #include "core/base/finite.hpp"
 #include "core/base/sincos.hpp"
@@ -23,6 +25,17 @@ std::uint32_t find_tool(const Machine& machine, std::uint16_t number) noexcept {
     return kNoIndex;
 }
 
+/// Whether the cost of stated errors holds there.
+bool is_within_errors(const Machine& machine, std::span<const double> position) noexcept {
+    const PoseErrors& errors = machine.pose_errors;
+    bool is_within = true;
+    for (std::size_t i = 0; errors.are_stated && i < machine.axes.size(); ++i) {
+        is_within = is_within && (machine.axes[i].kind == AxisKind::rotary ||
+                                  std::fabs(position[i]) <= errors.within[i]);
+    }
+    return is_within;
+}
+
 SnapshotStatus judge_positions(const Machine& machine, const AxisSnapshot& snapshot) noexcept {
     if (snapshot.axis_count != machine.axes.size()) {
         return SnapshotStatus::wrong_axes;
@@ -35,8 +48,9 @@ SnapshotStatus judge_positions(const Machine& machine, const AxisSnapshot& snaps
             return SnapshotStatus::not_finite;
         }
     }
-    return is_in_travel(machine, snapshot.position) ? SnapshotStatus::ok
-                                                    : SnapshotStatus::left_travel;
+    return is_in_travel(machine, snapshot.position) && is_within_errors(machine, snapshot.position)
+               ? SnapshotStatus::ok
+               : SnapshotStatus::left_travel;
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ Ball ball_of(const Machine& machine, std::uint32_t body, std::uint32_t tool,
     return {apply(at, extent.middle_mm), extent.radius_mm};
 }
 
-/// The sum of the place errors of a body, its tool and its carriers, those of both bodies left out.
+/// The sum of the place errors of both bodies, their tool and their carriers, common ones left out.
 double place_errors_mm(const Machine& machine, const Pair& pair, std::uint32_t tool) noexcept {
     double sum = 0;
     std::uint32_t a = pair.a, b = pair.b;
@@ -45,7 +45,9 @@ double place_errors_mm(const Machine& machine, const Pair& pair, std::uint32_t t
         sum += machine.bodies[end].place_error_mm;
         end = machine.bodies[end].parent;
     }
-    return sum;
+    // One carries the other: its own surface may be off all the same.
+    return a != kNoIndex && (a == pair.a || a == pair.b) ? sum + machine.bodies[a].place_error_mm
+                                                         : sum;
 }
 
 /// A turn about an axis that is up to p beside its pivot and turned by up to phi moves a point at
@@ -53,6 +55,12 @@ double place_errors_mm(const Machine& machine, const Pair& pair, std::uint32_t t
 double turn_error_mm(const Joint& joint, double radius_mm) noexcept {
     return 2 * joint.pivot_error_mm +
            2 * joint.direction_error_rad * (radius_mm + joint.pivot_error_mm);
+}
+
+/// How far a gantry may place a point between its rails, or as far from their middle as they are
+/// apart, from where the mean of its joints does.
+double skew_error_mm(const Axis& axis) noexcept {
+    return axis.skew_mm > 0 ? axis.skew_mm + 2 * (axis.following_error + axis.position_error) : 0;
 }
 
 /// Walks from one body to the other and lowers the error of each joint to that seen from here.
@@ -65,7 +73,8 @@ void walk(const Machine& machine, const JointPath& path, Ball ball, bool from_a,
         const Joint& joint = machine.bodies[path.body[at]].joint;
         const Axis& axis = machine.axes[joint.axis];
         if (axis.kind == AxisKind::linear) {
-            const double error = joint.direction_error_rad * within[joint.axis] + axis.skew_mm;
+            const double error =
+                joint.direction_error_rad * within[joint.axis] + skew_error_mm(axis);
             errors[at] = std::min(errors[at], error);
             ball.radius_mm += within[joint.axis] + error;
             continue;

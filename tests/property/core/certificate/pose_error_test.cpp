@@ -188,12 +188,16 @@ TEST_F(PoseError, CommonCarriersCostNothing) {
     state();
     const std::uint32_t parent = m.bodies[kTurnedPlate].parent;
     ASSERT_NE(parent, kNoIndex);
-    m.bodies[kTurnedPlate].place_error_mm = 0;
+    m.bodies[kTurnedPlate].place_error_mm = m.bodies[parent].place_error_mm = 0;
     m.bodies[kTurnedPlate].joint.pivot_error_mm = m.bodies[kTurnedPlate].joint.direction_error_rad =
         0;
     EXPECT_EQ(pose_error_mm(m, {.a = parent, .b = kTurnedPlate}, kNoIndex, extent_of(plate),
                             extent_of(plate), error_range(m)),
               0);
+    m.bodies[parent].place_error_mm = 0.25;  // what it carries is where it is, its surface is not
+    EXPECT_NEAR(pose_error_mm(m, {.a = parent, .b = kTurnedPlate}, kNoIndex, extent_of(plate),
+                              extent_of(plate), error_range(m)),
+                0.25, 1e-9);
 }
 
 }  // namespace

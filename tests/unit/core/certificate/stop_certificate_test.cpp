@@ -143,6 +143,9 @@ TEST_F(StopCertificateTest, TheSkewOfAGantryCountsWhereItMoves) {
         return pose_error_mm(m, m.pairs[0], 1, BodyExtent{}, BodyExtent{}, error_range(m));
     };
     const auto axis_of = [this](std::uint32_t body) { return m.bodies[body].joint.axis; };
+    for (Axis& axis : m.axes) {
+        axis.following_error = axis.position_error = 0;
+    }
     EXPECT_EQ(error(), 0);
     m.axes[axis_of(kTable)].skew_mm = 0.125;
     EXPECT_NEAR(error(), 0.125, 1e-12);
@@ -151,6 +154,9 @@ TEST_F(StopCertificateTest, TheSkewOfAGantryCountsWhereItMoves) {
     m.bodies[kTable].parent = kNoIndex;
     m.bodies[kTable].joint.axis = kNoIndex;
     EXPECT_NEAR(error(), 0.0625, 1e-12);
+    m.axes[axis_of(kHead)].following_error = 0.02;  // of each joint
+    m.axes[axis_of(kHead)].position_error = 0.001;
+    EXPECT_NEAR(error(), 0.0625 + 0.042, 1e-12);
 }
 
 // The box is what the reach of each axis says, around the newest position; an axis at rest moves
