@@ -109,5 +109,7 @@ extern "C" axg_status axg_guard_show(axg_guard* guard, const axg_show_options* o
     } catch (const std::system_error&) {
         put("cannot start a thread. Close other programs, or see ulimit -u.");
         return AXG_STATUS_NO_MEMORY;
+    } catch (...) {
+        return AXG_STATUS_INTERNAL;
     }
 }

@@ -3,9 +3,11 @@
 
 #include <poll.h>
 #include <pthread.h>
+#include <sched.h>
 #include <sys/resource.h>
 
 #include <csignal>
+#include <exception>
 
 #include "firmware_if/can/socket_can.hpp"
 
@@ -14,6 +16,28 @@ namespace {
 
 constexpr int kLogPeriodMs = 20;
 constexpr int kServiceNice = 10;
+
+class SignalsBlocked {
+  public:
+    SignalsBlocked() {
+        sigset_t all;
+        sigfillset(&all);
+        pthread_sigmask(SIG_SETMASK, &all, &before_);
+    }
+    ~SignalsBlocked() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+    SignalsBlocked(const SignalsBlocked&) = delete;
+    SignalsBlocked& operator=(const SignalsBlocked&) = delete;
+
+  private:
+    sigset_t before_{};
+};
+
+/// A thread begins with the policy of its maker, whose cycles it must not delay.
+void leave_real_time() noexcept {
+    const sched_param none{};
+    pthread_setschedparam(pthread_self(), SCHED_OTHER, &none);
+    setpriority(PRIO_PROCESS, 0, kServiceNice);  // of this thread alone, on Linux
+}
 
 }  // namespace
 
@@ -42,17 +66,14 @@ LiveService::~LiveService() {
 }
 
 void LiveService::start() {
-    sigset_t all, before;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);  // a thread begins with those of its maker
+    const SignalsBlocked blocked;  // a thread begins with those of its maker
     logger_ = std::thread([this] { run_logger(); });
     if (socket_.is_open() && socket_.listen()) {
         server_ = std::thread([this] {
-            setpriority(PRIO_PROCESS, 0, kServiceNice);  // of this thread alone, on Linux
+            leave_real_time();
             serve_status({.socket = &socket_, .line = &line_, .desk = &desk_}, status_, is_ending_);
         });
     }
-    pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
 void LiveService::note(const LiveNote& note) noexcept {
@@ -78,10 +99,15 @@ void LiveService::take_records() {
 }
 
 void LiveService::run_logger() {
+    leave_real_time();
     while (!is_ending_.load()) {
-        take_records();
-        dump_.serve(now_us_.load(std::memory_order_relaxed));
-        writer_.work(metrics_, monotonic_us());
+        try {
+            take_records();
+            dump_.serve(now_us_.load(std::memory_order_relaxed));
+            writer_.work(metrics_, monotonic_us());
+        } catch (const std::exception&) {
+            // No memory, or a folder that cannot be read: a dump or metrics are lost, not the host.
+        }
         poll(nullptr, 0, kLogPeriodMs);
     }
 }
