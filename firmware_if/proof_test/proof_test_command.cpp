@@ -3,6 +3,8 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <termios.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <cstdio>
@@ -74,8 +76,12 @@ class ProofLog {
     bool is_whole_ = true;
 };
 
-/// An answer other than yes, or none, is no.
+/// An answer other than yes, or none, is no. What was typed before the question is no answer.
 bool is_yes(const char* question) {
+    if (isatty(STDIN_FILENO) == 1) {
+        tcflush(STDIN_FILENO, TCIFLUSH);
+        std::cin.ignore(std::cin.rdbuf()->in_avail());
+    }
     fmt::print(stderr, "  {} Type yes or no: ", question);
     std::string word;
     std::getline(std::cin, word);
