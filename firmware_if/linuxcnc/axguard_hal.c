@@ -419,9 +419,8 @@ static void take_sample(host* host, const union hal_stream_data record[]) {
 
 static bool make_guard(host* host, int count, char** words) {
     static char text[TEXT_BYTES];
-    axg_options options;
+    axg_options options = {0};
     axg_show show = {0};
-    memset(&options, 0, sizeof options);
     options.version = AXG_INTERFACE_VERSION;
     options.engine = AXG_ENGINE_OF_MACHINE_FILE;
     options.mode = AXG_MODE_STOPPABLE;
@@ -440,13 +439,11 @@ static bool make_guard(host* host, int count, char** words) {
         } else if (strcmp(words[i], "--bus") == 0 && i + 1 < count) {
             host->interface = words[++i];
             options.engine = AXG_ENGINE_CPU;  // only returns the values of the machine file
-        } else if (axg_show_take(&show, count, words, &i)) {
-            continue;
         } else if (strcmp(words[i], "--record") == 0 && i + 1 < count) {
             host->record = axg_record_open(words[++i]);
         } else if (words[i][0] != '-' && options.machine_file == NULL) {
             options.machine_file = words[i];
-        } else {
+        } else if (!axg_show_take(&show, count, words, &i)) {
             fprintf(stderr, "axguard-hal: unknown argument: %s\n", words[i]);
             return false;
         }

@@ -75,9 +75,9 @@ static inline int axg_skewed_axis(const axg_joints* joints, const double positio
 }
 
 // Both joints of an axis get their mean: a stop then leaves the skew as it is, and the mean, which
-// the guard proves, brakes as the machine file states.
-static inline void axg_level(const axg_joints* joints, double speed[]) {
-    for (int axis = 0; axis < joints->axes; ++axis) {
+// the guard proves, brakes as the machine file states. Before they are homed one may move alone.
+static inline void axg_level(const axg_joints* joints, double speed[], bool are_homed) {
+    for (int axis = 0; are_homed && axis < joints->axes; ++axis) {
         const double mean = axg_mean_of(joints, speed, axis);
         speed[joints->first[axis]] = speed[joints->second[axis]] = mean;
     }

@@ -291,7 +291,7 @@ static bool is_homed(void) {
 // and none turns round.
 static bool ramp(double period_s) {
     bool moves = false;
-    axg_level(&map, state.speed);
+    axg_level(&map, state.speed, is_homed());
     for (int i = 0; i < joints; ++i) {
         const double less = state.option[AXG_WIRE_STOPPING + map.axis[i]] * period_s;
         const double speed = fabs(state.speed[i]) - less;

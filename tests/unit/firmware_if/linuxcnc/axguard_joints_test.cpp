@@ -81,7 +81,10 @@ TEST(LinuxCncJoints, TheGuardGetsTheMiddle) {
 TEST(LinuxCncJoints, BothJointsOfAnAxisBrakeFromOneSpeed) {
     const axg_joints of = joints_from("XYYZ");
     double speed[] = {3, 40, 60, -2};
-    axg_level(&of, speed);
+    axg_level(&of, speed, false);
+    EXPECT_EQ(std::vector<double>(speed, speed + 4), (std::vector<double>{3, 40, 60, -2}))
+        << "before homing one joint may search while the other stands";
+    axg_level(&of, speed, true);
     EXPECT_EQ(std::vector<double>(speed, speed + 4), (std::vector<double>{3, 50, 50, -2}));
 }
 
