@@ -74,12 +74,12 @@ std::string tool_path(const YamlNode& node, std::size_t index) {
 
 void read_tool(const YamlEntry& item, std::size_t index, MachineDraft& draft) {
     const std::string path = tool_path(item.value, index);
-    MapReader reader{item.value,
-                     path,
-                     {"number", "name", "length_mm", "diameter_mm", "mesh", "profile_mm",
-                      "segments", "sections", "turns", "size_is_right", "at_mm", "rotate_deg",
-                      "place_error_mm"},
-                     draft.faults};
+    MapReader reader{
+        item.value,
+        path,
+        {"number", "name", "length_mm", "diameter_mm", "mesh", "profile_mm", "segments", "sections",
+         "turns", "size_is_right", "at_mm", "rotate_deg", "place_error_mm"},
+        draft.faults};
     Tool tool;
     std::uint32_t number = 0;
     if (reader.whole("number", Need::required, {1, 65535}, number)) {

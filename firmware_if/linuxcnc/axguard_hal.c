@@ -2,8 +2,7 @@
 // HAL component, userspace: passes the sample of every servo period from axguard_stop to the guard
 // (libaxguard) in this process, and the guard's frames back. If it is killed, no later permit
 // arrives: the realtime component counts the last one down by itself.
-// With --bus the guard is axguardd on another computer: samples leave as frames, its frames come
-// in. Options: axguard-hal.1.
+// With --bus the guard is axguardd on another computer. Options: axguard-hal.1.
 #include <axguard.h>
 #include <hal.h>
 #include <inttypes.h>

@@ -35,7 +35,7 @@ struct ProofView {
     const GuardSight& now;
     const GuardSight& before;  // when the step began
     bool was_gone = false;     // the guard did not reply since the step began
-    std::string_view pair;     // the one at the known place; empty: any
+    std::string_view pair;     // of the known place; empty: any
 };
 
 struct ProofStep {

@@ -76,7 +76,7 @@ class ProofLog {
     bool is_whole_ = true;
 };
 
-/// An answer other than yes, or none, is no. What was typed before the question is no answer.
+/// An answer other than yes, or none, is no. A line typed before the question is no answer.
 bool is_yes(const char* question) {
     if (isatty(STDIN_FILENO) == 1) {
         tcflush(STDIN_FILENO, TCIFLUSH);

@@ -21,7 +21,7 @@ METRIC = re.compile(r"\baxguard_[a-z_]+")
 
 def written_by(root):
     """Names of metrics, and the labels of each, as metrics.cpp writes them."""
-    source = (root / "firmware_if/axguardd/metrics.cpp").read_text(encoding="utf-8")
+    source = (root / "firmware_if/live/metrics.cpp").read_text(encoding="utf-8")
     names = set(re.findall(r'\{"(\w+_total)"', source))
     names |= set(re.findall(r'\bhead\("(\w+)"', source))
     labels = set(re.findall(r'(\w+)=\\"\{', source))
