@@ -134,7 +134,7 @@ constexpr const char* kGantryHead =
     R"(# skew_mm: so far two joints of one axis may be apart, at least twice following_error_mm. The
 # proof allows for it, and axguard_stop, loaded with coordinates= of KINEMATICS, gives no permit
 # beyond it. Points farther from the middle than the rails are apart it does not cover.
-);
+)";
 
 /// The guessed deceleration of a stop, with its price: so much longer is the stop from full speed
 /// if only half of it is true. LinuxCNC brakes each joint by its MAX_ACCELERATION.

@@ -8,6 +8,7 @@
 #include "config/machine/machine_keys.hpp"
 #include "core/certificate/pair_queries.hpp"
 #include "core/certificate/pose_error.hpp"
+#include "core/certificate/travel.hpp"
 #include "core/machine/kinematics.hpp"
 
 namespace axg {
