@@ -314,7 +314,7 @@ std::string words_of_tool(const Json& json) {
     if (tool.is_null()) {
         return {};
     }
-    const std::string number = fmt::format(", tool {}", tool.get<std::uint64_t>());
+    std::string number = fmt::format(", tool {}", tool.get<std::uint64_t>());
     if (tool == guarded) {
         return number;
     }
