@@ -67,9 +67,8 @@ TEST_F(DemoCommand, ShowsBothProgramsAndTheStopInPlainWords) {
           "could not be proven clear within the time of a cycle\n",
           "they are at least 4.6609 mm apart, the proof of a stop needs up to 9.7041 mm\n",
           "without the guard, cutter and plate are in contact 0.198 s later",
-          "3  with guard: {cap: per_axis} a simulated board slows down, and rests 0.12 mm above "
-          "it, "
-          "2.7 s later"}) {
+          "3  as 2 with guard: {cap: per_axis}: permits cap speeds, the board rests 0.12 mm above "
+          "the plate\n"}) {
         EXPECT_TRUE(shows(text)) << text << "\n" << screen;
     }
     EXPECT_FALSE(shows("leaf_pairs")) << "how the guard is built is a detail";
