@@ -6,8 +6,18 @@
 namespace axg {
 namespace {
 
+/// Whether the clearance suffices for a stop, so that only the work of a cycle was short.
+bool has_clearance(const WhyFacts& facts) noexcept {
+    return facts.available_mm > 0 && facts.available_mm >= facts.needed_mm;
+}
+
 std::string cause_sentence(const WhyFacts& facts) {
     const std::string pair = facts.a + " and " + facts.b;
+    const bool is_about_work =
+        facts.cause == WhyCause::capacity || facts.cause == WhyCause::halving;
+    if (is_about_work && facts.is_of_stop && !has_clearance(facts)) {
+        return pair + " are too near to be proven clear";
+    }
     switch (facts.cause) {
         case WhyCause::margin:
             return pair + " are not proven to be farther apart than their margin";
@@ -27,11 +37,6 @@ std::string cause_sentence(const WhyFacts& facts) {
             break;
     }
     return pair + " could not be proven clear";
-}
-
-/// Whether the clearance suffices for a stop, so that only the work of a cycle was short.
-bool has_clearance(const WhyFacts& facts) noexcept {
-    return facts.available_mm > 0 && facts.available_mm >= facts.needed_mm;
 }
 
 /// In the words of the status: verdict: predicted: cutter - c.

@@ -95,7 +95,7 @@ INSTANTIATE_TEST_SUITE_P(
             "Stop",
             "demo.log",
             {"\nSTOP at 40.875405 s, sample 39875: predicted, cutter-c\n", "demo.ngc:700: G1 ",
-             "cutter (tool 1) and c could not be proven clear within the time of a cycle",
+             "cutter (tool 1) and c are too near to be proven clear",
              "they are at least 4.6609 mm apart",
              "caps and commands ahead change the motion: axguard drive ",
              "jog A+ (0.5 deg: clearance at least "}},
