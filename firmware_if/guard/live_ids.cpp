@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "core/base/assert.hpp"
-#include "core/machine/frame_ids.hpp"
 
 namespace axg {
 

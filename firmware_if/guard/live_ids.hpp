@@ -5,12 +5,15 @@
 #include <cstdint>
 #include <span>
 
+#include "core/machine/frame_ids.hpp"
 #include "core/machine/machine.hpp"
 #include "firmware_if/protocol/axis_frames.hpp"
 
 namespace axg {
 
-inline constexpr std::uint32_t kLiveIdsMax = kFramesPerSnapshotMax + 10 + kAxesMax;
+// Beside the rows of kFrameIds: the look-ahead path, and the permit's second id.
+inline constexpr std::uint32_t kLiveIdsMax =
+    kFramesPerSnapshotMax + static_cast<std::uint32_t>(kFrameIds.size()) + 2 + kAxesMax;
 /// Writes every id that the guard reads, including its own ids for their echo.
 /// @return  how many; `out` needs room for kLiveIdsMax
 [[nodiscard]] std::uint32_t live_ids(const Machine& machine, std::span<std::uint32_t> out) noexcept;
