@@ -38,6 +38,8 @@ struct VerifyArguments {
     JsonOutput json;
 };
 
+constexpr double kAbove = 1 + 1e-9;  // of a feed: roundings of the override
+
 /// The override multiplies programmed feeds, not rapids; G93's durations shrink by it.
 void scale_feeds(Program& program, int percent) {
     for (Move& move : program.moves) {
@@ -139,6 +141,7 @@ class Verification {
         }
         Program program = reading.program;
         scale_feeds(program, percent);
+        note_cut_feeds(program);
         SimulationOptions options;
         options.sample_us = loaded_.machine.can.sample_us;
         options.samples_max = arguments_.gcode.samples_max;
@@ -158,6 +161,16 @@ class Verification {
         add_blocks(summary.lines, reading.text);
         replay(trace->path(), file, summary.lines, run);
         return run;
+    }
+
+    /// A feed above the cap of simulated feeds is not what the control would drive.
+    void note_cut_feeds(const Program& program) {
+        const double cap_mm_min = 60 * loaded_.machine.program_speed_mm_s;
+        const bool is_cut =
+            std::any_of(program.moves.begin(), program.moves.end(), [cap_mm_min](const Move& move) {
+                return move.feed_kind == FeedKind::per_minute && move.feed > cap_mm_min * kAbove;
+            });
+        report_.cut_mm_min = is_cut ? cap_mm_min : report_.cut_mm_min;
     }
 
     void replay(const std::string& trace, const std::string& file, const ProgramLines& lines,

@@ -34,6 +34,9 @@ std::string describe_verify(const VerifyReport& report) {
              {"command", "verify"},       {"exit_code", report.exit_code()},
              {"machine", report.machine}, {"overrides", report.overrides},
              {"rapids", "axis speeds"}};
+    if (report.cut_mm_min > 0) {
+        out["feeds_cut_at_mm_min"] = report.cut_mm_min;
+    }
     if (!report.not_obeyed.empty()) {
         out["not_obeyed"] = report.not_obeyed;
     }

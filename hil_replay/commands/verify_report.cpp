@@ -192,6 +192,13 @@ void print_table_end(const VerifyReport& report, std::FILE* words) {
     fmt::print(words, "{} of {} programs clear at {} of the feeds{}; G0 at axis speed\n", clear,
                report.programs.size(), percents(report.overrides),
                report.overrides.size() > 1 ? " (not proven between them)" : "");
+    if (report.cut_mm_min > 0) {
+        fmt::print(
+            words,
+            "feeds above {:g} mm/min ran at that speed, not higher: program_speed_mm_min of the "
+            "machine file is to be the control's largest feed, override included\n",
+            report.cut_mm_min);
+    }
     if (!report.not_obeyed.empty()) {
         fmt::print(words, "{}\n", report.not_obeyed);
     }

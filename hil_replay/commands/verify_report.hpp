@@ -47,6 +47,7 @@ struct VerifyReport {
     std::string machine{}, version;
     std::vector<int> overrides;
     std::string not_obeyed{};  // why nothing obeys the permits; empty: the board obeys them
+    double cut_mm_min = 0;     // feeds above it were simulated at it; 0: none was
     std::vector<VerifiedProgram> programs{};
 
     [[nodiscard]] int exit_code() const;  // of its programs, the largest

@@ -14,10 +14,10 @@ import sys
 
 from sources import finish, read_text, tracked_files
 
-# Pages, most words of all of them: a limit against growth. The first four sum to 50,313.
+# Pages, most words of all of them: a limit against growth. The first four sum to 50,460.
 SHELVES = {
-    "guide": (["README.md", "docs/guide/*"], 10_043),
-    "theory": (["docs/theory/*"], 13_080),
+    "guide": (["README.md", "docs/guide/*"], 10_180),
+    "theory": (["docs/theory/*"], 13_090),
     "reference": (["docs/reference/*"], 18_690),
     "measurements and decisions": (["docs/measurements/*", "docs/decisions/*"], 8_500),
     "rules": (["CONTRIBUTING.md", "docs/glossary.md", "docs/style.md"], 3_760),

@@ -90,6 +90,20 @@ TEST(VerifyCommand, AnOverrideChangesFeedsAndNotRapids) {
         << shop.err;
 }
 
+/// 150 % of a feed that the simulation cuts was called clear at 150 %.
+TEST(VerifyCommand, AFeedThatIsCutIsSaid) {
+    Workshop shop;
+    (void)shop.write("fast.ngc", "G21 G94 G90\nG1 X20 F9000\nM2\n");
+    const std::string verify = "verify " + kPaperMachine + " fast.ngc --override ";
+    (void)shop.run(verify + "111 --json");
+    EXPECT_FALSE(Json::parse(shop.out).contains("feeds_cut_at_mm_min")) << shop.out;
+    (void)shop.run(verify + "150 --json");
+    EXPECT_EQ(Json::parse(shop.out).at("feeds_cut_at_mm_min"), 10000) << shop.out;
+    EXPECT_NE(shop.err.find("feeds above 10000 mm/min ran at that speed, not higher"),
+              std::string::npos)
+        << shop.err;
+}
+
 TEST(VerifyCommand, SeveralProgramsMakeATableAndTheLargestCode) {
     Workshop shop;
     (void)shop.write("bad.ngc", "G0 X9999\nM2\n");
