@@ -63,8 +63,7 @@ TEST_F(DemoCommand, ShowsBothProgramsAndTheStopInPlainWords) {
     for (const char* const text :
          {"1  paper-trunnion-clean.ngc runs to its end\n", "2  paper-trunnion-demo.ngc drives ",
           "time of a cycle: median ", "; deadline 500 us",
-          "stop at 40.875 s, line 700: G1 X0.0000 Y106.2623 ",
-          "are too near to be proven clear\n",
+          "stop at 40.875 s, line 700: G1 X0.0000 Y106.2623 ", "are too near to be proven clear\n",
           "they are at least 4.6609 mm apart, the proof of a stop needs up to 9.7041 mm\n",
           "without the guard, cutter and plate are in contact 0.198 s later",
           "3  as 2 with guard: {cap: per_axis}: permits cap speeds, the board rests 0.12 mm above "
