@@ -101,7 +101,8 @@ def stop_at_the_collision(format_, mode):
     expect(code == 10 and report["cause"] == "verdict" and report["reason"] == reason,
            code, report, *guard.lines)
     expect(guard.said(f"stopped: verdict: {reason}: cutter - c"), *guard.lines)
-    expect(guard.said("  cutter (tool 1) and c "), "the log lacks the sentences", *guard.lines)
+    bodies = "cutter (tool 1) and c" if mode == "stoppable" else "cutter and c"
+    expect(guard.said(f"  {bodies} "), "the log lacks the sentences", *guard.lines)
     frames = bus.drain()
     ids = [identifier for identifier, _ in frames]
     plain = [data for identifier, data in frames if identifier == PERMIT]
