@@ -56,6 +56,9 @@ class BusPlace(Place):
         text = hal.read_text(encoding="utf-8")
         text = text.replace(" --simulation ", " --bus vcan0 ")
         assert "--bus vcan0" in text, "the guard would be in LinuxCNC's own process"
+        shown = " --status-socket axguard.status --state-dir ."  # here axguardd shows the guard
+        assert shown in text
+        text = text.replace(shown, "")
         hal.write_text(text, encoding="utf-8")
 
 
