@@ -131,7 +131,8 @@ add_custom_target(packaged DEPENDS axguard axguard-lab axguardd axg_c axg_firmwa
   ${AXG_ARCHIVE})
 add_dependencies(packaged packaged_pages)
 if(TARGET axguard-hal)
-  # Types of the pins from the sources, meanings from the page.
+  # Types of the pins from the sources, meanings from the page. Of each build: `cmake --install`
+  # puts them where LinuxCNC looks.
   set(manuals ${PROJECT_BINARY_DIR}/packaged/axguard_stop.9
               ${PROJECT_BINARY_DIR}/packaged/axguard-hal.9)
   add_custom_command(OUTPUT ${manuals}
@@ -140,7 +141,7 @@ if(TARGET axguard-hal)
     COMMAND Python3::Interpreter toolchains/hal_man_pages.py ${PROJECT_VERSION}
             ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/packaged
     WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-  add_custom_target(packaged_hal_pages DEPENDS ${manuals})
+  add_custom_target(packaged_hal_pages ALL DEPENDS ${manuals})
   install(FILES ${manuals} DESTINATION ${CMAKE_INSTALL_MANDIR}/man9 COMPONENT axguard-linuxcnc)
   add_dependencies(packaged axguard-hal axguard_stop packaged_hal_pages)
 endif()
