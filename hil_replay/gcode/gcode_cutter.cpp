@@ -155,7 +155,7 @@ std::string CutterPath::add_line(const Move& next, const AxisPositions& from,
             return "an inner corner after a pause; take the pause elsewhere";
         }
         if (is_after_arc) {
-            const std::string fault = meet_line(corner, way, meet);
+            std::string fault = meet_line(corner, way, meet);
             if (!fault.empty()) {
                 return fault;
             }
@@ -163,12 +163,12 @@ std::string CutterPath::add_line(const Move& next, const AxisPositions& from,
             const PlanePoint back = (settings_.is_left ? 1.0 : -1.0) * left_of(centre_ - corner);
             meet = centre_ + (1 / std::tan((turned + kPi) / 2)) * back;
         }
-        const std::string fault = end_waiting(meet, out);
+        std::string fault = end_waiting(meet, out);
         if (!fault.empty()) {
             return fault;
         }
     } else if (turned > kStraightRad) {
-        const std::string fault = end_waiting(centre_, out);
+        std::string fault = end_waiting(centre_, out);
         if (!fault.empty()) {
             return fault;
         }

@@ -80,6 +80,7 @@ class GcodeInterpreter {
     /// the coordinates of their position change.
     void change_coordinates(const AxisPositions& offset, bool is_controlled);
     void move();
+    void move_to_target(bool is_arc_mode);
     [[nodiscard]] double word_value(char letter, const Axis& axis) const;
     /// The index of the axis; kNoIndex, and a fault, if the machine has no such axis.
     std::uint32_t named_axis(char letter);

@@ -115,6 +115,10 @@ void GcodeInterpreter::move() {
     if (is_arc_mode && is_unknown_arc()) {
         return;
     }
+    move_to_target(is_arc_mode);
+}
+
+void GcodeInterpreter::move_to_target(bool is_arc_mode) {
     Move next = new_move(is_arc_mode ? MoveKind::arc : MoveKind::line);
     if (!set_target(next.target) || !set_feed(next) || (is_arc_mode && !set_arc(next))) {
         return;
