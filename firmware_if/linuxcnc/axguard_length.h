@@ -33,6 +33,13 @@ static inline void axg_length_begin(axg_length* length, uint16_t tool) {
     length->differs = false;
 }
 
+// Of the tool in the spindle, by the guard; negative: the machine file states none.
+static inline void axg_length_take(axg_length* length, uint32_t file_tool, double file_mm) {
+    length->file_tool = file_tool;
+    length->file_mm = file_mm;
+    length->is_known = file_mm >= 0;
+}
+
 // Once a servo period. Without an offset (G49) nothing is compared; an offset or a tolerance that
 // is no number differs.
 // @return  true: the permit is withheld

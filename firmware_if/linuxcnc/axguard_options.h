@@ -3,10 +3,12 @@
 #ifndef AXG_AXGUARD_OPTIONS_H
 #define AXG_AXGUARD_OPTIONS_H
 
+#include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
 
 #include "firmware_if/board/axguard_board.h"
+#include "firmware_if/linuxcnc/axguard_joints.h"
 #include "firmware_if/linuxcnc/axguard_wire.h"
 
 static inline axg_board_options axg_options_from(const double option[AXG_WIRE_OPTIONS]) {
@@ -25,6 +27,17 @@ static inline axg_board_options axg_options_from(const double option[AXG_WIRE_OP
         options.hashes[i] = (uint32_t)option[AXG_WIRE_HASH + i];
     }
     return options;
+}
+
+// Whether each axis has what its ramp needs, and each gantry its skew.
+static inline bool axg_brakes(const axg_joints* map, const double option[AXG_WIRE_OPTIONS]) {
+    bool brakes = true;
+    for (int i = 0; i < map->axes; ++i) {
+        const bool has_skew = option[AXG_WIRE_SKEW + i] > 0;
+        brakes = brakes && option[AXG_WIRE_STOPPING + i] > 0 && option[AXG_WIRE_UNIT + i] > 0 &&
+                 (has_skew || !axg_is_gantry(map, i));
+    }
+    return brakes;
 }
 
 #endif

@@ -14,6 +14,7 @@
 #include <time.h>
 
 #include "firmware_if/board/axguard_board.h"
+#include "firmware_if/linuxcnc/axguard_home.h"
 #include "firmware_if/linuxcnc/axguard_joints.h"
 #include "firmware_if/linuxcnc/axguard_length.h"
 #include "firmware_if/linuxcnc/axguard_options.h"
@@ -52,18 +53,18 @@ typedef struct stop_state {
     bool has_at;
     bool is_synchronous;  // what is commanded passes without a jump
     bool is_ramping, is_latched;
-    uint32_t still;
+    uint32_t still, ramp_periods;
     bool arm_before;
     uint32_t arms, arm_left, nonce;
     bool guard_is_ready;  // it sends no stop frame any more: a board armed before would stop again
     uint8_t hashes_wanted;
+    axg_home home;
     axg_tool tool;
     axg_length length;
     bool is_jog, jogs_down;  // as the samples report it
     int jog_joint;
-    uint64_t done;  // last sample with all replies received
-    bool waits;     // simulation-wait-us: a guard replies
-    uint32_t ramp_periods;
+    uint64_t done;     // last sample with all replies received
+    bool waits;        // simulation-wait-us: a guard replies
     int64_t clock_ns;  // of the host, when this period began
     axg_period period;
     char text[AXG_WIRE_TEXT_BYTES + 1];  // for the operator
@@ -91,12 +92,7 @@ static void begin(void) {
     const bool is_complete = memchr(state.options_seen, 0, sizeof state.options_seen) == NULL;
     memset(state.options_seen, 0, sizeof state.options_seen);
     const axg_board_options options = axg_options_from(state.option);
-    bool brakes = true;
-    for (int i = 0; i < map.axes; ++i) {
-        const bool has_skew = state.option[AXG_WIRE_SKEW + i] > 0;
-        brakes = brakes && state.option[AXG_WIRE_STOPPING + i] > 0 &&
-                 state.option[AXG_WIRE_UNIT + i] > 0 && (has_skew || !axg_is_gantry(&map, i));
-    }
+    const bool brakes = axg_brakes(&map, state.option);
     const bool is_ours = options.period_us == state.period_us && options.axis_count == map.axes;
     state.nonce = (uint32_t)((uint64_t)rtapi_get_time() >> 4) & AXG_BOARD_NONCE_MAX;
     const bool is_up = axg_board_power_up(&state.board, &options, state.nonce, now_us());
@@ -154,9 +150,7 @@ static void take_message(const union hal_stream_data* message) {
             state.guard_is_ready = index != 0;
             break;
         case AXG_WIRE_LENGTH:
-            state.length.file_tool = message[1].u;
-            state.length.file_mm = message[3].f;
-            state.length.is_known = message[3].f >= 0;
+            axg_length_take(&state.length, message[1].u, message[3].f);
             break;
         case AXG_WIRE_TEXT:
             if (index < AXG_WIRE_TEXT_BYTES / 8) {
@@ -250,7 +244,7 @@ static void select_jog(void) {
 // The key leads out of a stop that forbids the change, and of an E-stop in that stop: LinuxCNC is
 // switched on for its tool change, and a command that moves a joint opens the chain again.
 static void change_tool(bool may_move) {
-    const bool rests = state.has_begun && state.still >= STILL_PERIODS && !state.is_ramping;
+    const bool rests = state.has_begun && state.still >= STILL_PERIODS;
     if (axg_tool_turn_key(&state.tool, &state.board, *pins->change_unguarded, rests)) {
         state.is_latched = false;
     }
@@ -285,6 +279,13 @@ static bool is_homed(void) {
         ++count;
     }
     return count == joints;
+}
+
+static void turn_home_key(void) {
+    const bool wants = !is_homed() && !axg_tool_is_unguarded(&state.tool);
+    const bool opens = axg_home_turn_key(&state.home, &state.board, *pins->home_unguarded, wants,
+                                         state.still >= STILL_PERIODS, now_us());
+    state.is_latched = state.is_latched && !opens;
 }
 
 // Each joint by itself, by the deceleration of the machine file: no joint waits for another one,
@@ -533,11 +534,10 @@ static void update(void* unused, long period_ns) {
     axg_board_motion motion = may_move();
     change_tool(motion.may_move);
     const bool is_aligned = read_commands(wanted);
-    const bool is_homing =
-        *pins->home_unguarded && !is_homed() && !axg_tool_is_unguarded(&state.tool);
-    move((motion.may_move || is_homing) && !state.is_latched, wanted, is_aligned,
+    turn_home_key();
+    move((motion.may_move || state.home.is_open) && !state.is_latched, wanted, is_aligned,
          (double)period_ns * 1e-9);
-    if (!is_homing) {
+    if (!state.home.is_open) {
         axg_board_moves(&state.board, state.still < STILL_PERIODS, now_us());
     }
     if (state.has_begun) {

@@ -64,6 +64,27 @@ def home():
     return until(lambda: all(STAT.homed[:STAT.joints]), 10)
 
 
+def jog_unhomed():
+    """Five millimetres of joint 0, before it is homed."""
+    COMMAND.teleop_enable(0)
+    COMMAND.wait_complete()
+    COMMAND.jog(linuxcnc.JOG_INCREMENT, True, 0, 20, 5)
+    until(lambda: STAT.task_state != linuxcnc.STATE_ON
+          or abs(float(pin("axguard-stop.0.out")) - 5) < 1e-3, 5)
+    return float(pin("axguard-stop.0.out"))
+
+
+def move_by_key():
+    """Before joints are homed a motion opens the E-stop chain. The turn of the key closes it again,
+    and a joint may move."""
+    said = {"without": jog_unhomed(), "chain_without": pin("axguard-stop.estop-ok")}
+    set_pin("axguard-stop.home-unguarded", 1)
+    time.sleep(0.1)
+    said["on_again"] = switch_on()
+    said["with"] = round(jog_unhomed(), 3)
+    return said
+
+
 def arm():
     set_pin("axguard-stop.arm", 0)
     time.sleep(0.05)
@@ -231,6 +252,9 @@ def act(event):
     elif event["do"] == "tool_change":  # in motion, and announced by nobody
         subprocess.run(["halcmd", "unlinkp", "axguard-stop.tool-change"], check=True)
         set_pin("axguard-stop.tool-change", 1)
+    elif event["do"] == "unhome":  # one joint, in motion
+        subprocess.run(["halcmd", "unlinkp", "axguard-stop.0.homed"], check=True)
+        set_pin("axguard-stop.0.homed", 0)
     elif event["do"] == "skew":  # of one joint of a gantry
         subprocess.run(["halcmd", "unlinkp", "axguard-stop.2.offset"], check=True)
         set_pin("axguard-stop.2.offset", event["value"])
@@ -260,6 +284,8 @@ def main():
     poll()
     try:
         RESULT["on"] = switch_on()
+        if SCENARIO.get("home_key"):  # and it stays turned
+            RESULT["home"] = move_by_key()
         RESULT["homed"] = home()
         if SCENARIO["guarded"]:
             RESULT["armed"] = arm()

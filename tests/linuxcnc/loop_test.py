@@ -106,6 +106,8 @@ def scenarios(source):
         "xyzac_collide": (TIP_COLLIDE, True, {}),
         "xyzbc_clean": (TIP_CLEAN.replace("A", "B"), False, {}),
         "xyzbc_collide": (TIP_COLLIDE.replace("A", "B"), True, {}),
+        "home_key": (SWING, True, {"home_key": True, "events": [
+            {"do": "unhome", "after_s": 1.5}]}),
         "gantry": (SWING, False, {"is_gantry": True}),
         "gantry_kill": (SWING, True, {"is_gantry": True, "events": kill}),
         "gantry_skew": (SWING, True, {"is_gantry": True, "skew": True, "again": True, "events": [
@@ -120,7 +122,7 @@ def scenarios(source):
 # At most three minutes; the others run by hand, by name.
 USUAL = ["clean", "collide", "collide_inch", "kill_approach", "late", "estop", "unguarded", "jog",
          "tool", "tool_collide", "tool_unknown", "tool_length", "tool_length_inch", "xyzac_clean",
-         "gantry_kill", "gantry_skew"]
+         "gantry_kill", "gantry_skew", "home_key"]
 SAME_MM = 0.5  # between two runs of one collision: three periods of its speed
 
 
@@ -350,6 +352,17 @@ def check_gantry(name, said):
     return faults
 
 
+HOME = {"without": 0, "chain_without": "FALSE", "on_again": True, "with": 5}
+
+
+def check_home(said):
+    """The key lets a joint move from rest before it is homed; left turned, it opens nothing for a
+    joint that loses its home in motion."""
+    found = said.get("home", {})
+    return [f"home_key: {key}: found {found.get(key)}, expected {wanted}"
+            for key, wanted in HOME.items() if found.get(key) != wanted]
+
+
 def check_units(facts_of):
     """The same machine in inch rests where the one in mm does."""
     if not {"collide", "collide_inch"} <= set(facts_of):
@@ -394,6 +407,7 @@ def run_all(given):
         if name == "collide":
             mine += check_words(name, said, output, list(place.folder.glob("linuxcnc-*.axgbox")))
         mine += check_record(name, place) if name == "gantry_kill" else []
+        mine += check_home(said) if name == "home_key" else []
         mine += check_gantry(name, said) if name.startswith("gantry") else []
         facts_of[name] = {"samples": len(rows), "overruns": overruns, "ended": said.get("ended"),
                           "contacts": sum(stop["reason"] != "tool" for stop in judged["stops"]),

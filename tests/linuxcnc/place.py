@@ -98,22 +98,22 @@ class Place:
         def shifted(match):
             return match[1] + str(int(match[2]) + (int(match[2]) > 1))
 
-        def rewrite(suffix, *changes):
-            file = self.folder / f"{self.name}.{suffix}"
-            text = file.read_text(encoding="utf-8")
-            for pattern, change in changes:
-                text, count = re.subn(pattern, change, text, flags=re.MULTILINE)
-                assert count, pattern
-            file.write_text(text, encoding="utf-8")
-
-        rewrite("ini", (r"(\[JOINT_)(\d)", shifted), ("XYZAC", "XYYZAC"),
-                ("JOINTS = 5", "JOINTS = 6"),
-                (r"^\[JOINT_1\]([^[]*)", r"[JOINT_1]\1[JOINT_2]\1"))
+        self.rewrite("ini", (r"(\[JOINT_)(\d)", shifted), ("XYZAC", "XYYZAC"),
+                     ("JOINTS = 5", "JOINTS = 6"),
+                     (r"^\[JOINT_1\]([^[]*)", r"[JOINT_1]\1[JOINT_2]\1"))
         index = r"((?:joint\.|axguard-stop\.|\b(?:cmd|out|offset|homed|enable)-))"
-        rewrite("hal", (index + r"(\d)\b", shifted),
-                (f"^net .*{index}1.*\n", lambda match: match[0] + re.sub(index + "1", r"\g<1>2",
-                                                                         match[0])))
-        rewrite("yaml", ("  Y: {kind: linear, ", "  Y: {kind: linear, skew_mm: 0.1, "))
+        self.rewrite("hal", (index + r"(\d)\b", shifted),
+                     (f"^net .*{index}1.*\n",
+                      lambda match: match[0] + re.sub(index + "1", r"\g<1>2", match[0])))
+        self.rewrite("yaml", ("  Y: {kind: linear, ", "  Y: {kind: linear, skew_mm: 0.1, "))
+
+    def rewrite(self, suffix, *changes):
+        file = self.folder / f"{self.name}.{suffix}"
+        text = file.read_text(encoding="utf-8")
+        for pattern, change in changes:
+            text, count = re.subn(pattern, change, text, flags=re.MULTILINE)
+            assert count, pattern
+        file.write_text(text, encoding="utf-8")
 
     def write_ini(self):
         ini = self.folder / f"{self.name}.ini"
