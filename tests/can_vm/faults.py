@@ -199,6 +199,21 @@ def two_instances():
     expect(guard.end()[0] == 12, *guard.lines)
 
 
+def two_states():
+    """No lock separates two guards with different state directories: their frames do, and neither
+    permits any more."""
+    board, guard = armed()
+    os.mkdir("/run/other")
+    second = Guard(state_dir="/run/other")
+    second.wait_for("stopped: ")
+    second.wait_for("bus: a guard frame from another sender")
+    guard.wait_for("stopped: ")
+    quiet_after(Bus(), 0.1)
+    for each in (second, guard):
+        expect(each.end()[0] == 12, *each.lines)
+    board.end()
+
+
 def foreign_stop():
     """A stop frame from another sender, with a byte that it should not have, stops the guard too;
     its own are none."""
@@ -282,8 +297,9 @@ def frames_of_this_host():
 
 
 SCENARIOS = {scenario.__name__: scenario for scenario in
-             (held, busy_host, signal_storm, down_and_up, removed, two_instances, foreign_stop,
-              foreign_frames, small_buffer, small_buffer_at_the_start, frames_of_this_host)}
+             (held, busy_host, signal_storm, down_and_up, removed, two_instances, two_states,
+              foreign_stop, foreign_frames, small_buffer, small_buffer_at_the_start,
+              frames_of_this_host)}
 
 if sys.argv[1] == "kills":
     attempt(kills, int(os.environ.get("AXG_VM_KILLS", "5")))

@@ -157,13 +157,13 @@ class Guard:
 
     def __init__(self, *options, format_="classical", mode="contact", is_local=True,
                  has_hashes=False, can_keys="", permit_samples=10, bus="vcan0", admission=UNFIT,
-                 guard_keys=""):
+                 guard_keys="", state_dir="/run"):
         self.lines = []
         self.changed = threading.Condition()
         path = machine_file(format_, has_hashes, can_keys, permit_samples, guard_keys)
         self.process = subprocess.Popen(
             [BUILD / "axguardd", "run", path, "--mesh-root", SOURCE / "config/machines",
-             "--bus", bus, "--state-dir", "/run", "--mode", mode, "--engine", "cpu",
+             "--bus", bus, "--state-dir", state_dir, "--mode", mode, "--engine", "cpu",
              "--json=/run/guard.json", *(["--local-board"] if is_local else []), *admission,
              *options],
             stderr=subprocess.PIPE, text=True)
