@@ -66,20 +66,25 @@ class BlockBuilder {
         const bool may_be_arc = motion_code == -1 || motion_code == 20 || motion_code == 30;
         const bool may_be_cycle = motion_code == -1 || is_canned_cycle(motion_code);
         const bool writes_offset = block_.code(non_modal) == 100;
+        const bool is_cubic = motion_code == 50, is_spline = is_single_spline(motion_code);
+        const bool is_point = motion_code == kNurbsPoint;
         unused('P',
                may_be_arc || may_be_cycle || writes_offset || block_.code(non_modal) == 40 ||
-                   block_.code(path) == 640,
-               "G4, G10, G64, arcs, canned cycles, M19, M50 to M53 and M62 to M66 take it");
-        unused('Q', may_be_cycle || block_.code(path) == 640,
-               "G64, G73, G83, M19 and M66 to M68 take it");
+                   block_.code(path) == 640 || is_cubic || is_point,
+               "G4, G5, G5.2, G10, G64, arcs, canned cycles, M19, M50 to M53 and M62 to M66 take "
+               "it");
+        unused('Q', may_be_cycle || block_.code(path) == 640 || is_cubic,
+               "G5, G64, G73, G83, M19 and M66 to M68 take it");
         unused('D', block_.code(cutter) > 400, "G41 to G42.1 and G96 take it");
         unused('E', false, "M66 to M68 take it");
         unused('H', block_.code(tool_length) == 430 || block_.code(tool_length) == 434,
                "G43 and G43.4 take it");
-        unused('L', may_be_cycle || writes_offset, "G10, M66 and canned cycles take it");
+        unused('L', may_be_cycle || writes_offset || is_point,
+               "G5.2, G10, M66 and canned cycles take it");
         unused('R', may_be_arc || may_be_cycle, "arcs, canned cycles and M19 take it");
-        unused('I', may_be_arc || motion_code == 331, "G2, G3 and G33.1 take it");
-        unused('J', may_be_arc, "G2 and G3 take it");
+        unused('I', may_be_arc || is_spline || motion_code == 331,
+               "G2, G3, G5, G5.1 and G33.1 take it");
+        unused('J', may_be_arc || is_spline, "G2, G3, G5 and G5.1 take it");
         unused('K', may_be_arc || is_thread(motion_code), "G2, G3, G33 and G33.1 take it");
     }
 
@@ -162,6 +167,11 @@ class BlockBuilder {
 bool is_axis_letter(char letter) {
     return std::find(std::begin(kAxisLetters), std::end(kAxisLetters), letter) !=
            std::end(kAxisLetters);
+}
+
+bool has_axis_word(const GcodeBlock& block) {
+    return std::any_of(std::begin(kAxisLetters), std::end(kAxisLetters),
+                       [&block](char letter) { return block.has(letter); });
 }
 
 bool is_setting_letter(const GcodeBlock& block, char letter) {

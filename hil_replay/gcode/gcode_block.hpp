@@ -55,6 +55,13 @@ inline constexpr char kAxisLetters[] = {'X', 'Y', 'Z', 'A', 'B', 'C', 'U', 'V', 
 [[nodiscard]] constexpr bool is_probe(std::int32_t motion) {
     return motion >= 382 && motion <= 385;
 }
+/// G5, G5.1: splines of one block. G5.2 and G5.3 are the first and the last block of a NURBS.
+[[nodiscard]] constexpr bool is_single_spline(std::int32_t motion) {
+    return motion == 50 || motion == 51;
+}
+inline constexpr std::int32_t kNurbsPoint = 52, kNurbsEnd = 53;
+/// True for a block with a word of one of the nine axes.
+[[nodiscard]] bool has_axis_word(const GcodeBlock& block);
 /// Whether a word that moves no axis uses this letter: M19, M50 to M53, M62 to M68, G96.
 [[nodiscard]] bool is_setting_letter(const GcodeBlock& block, char letter);
 /// Words whose axis words are offsets and not targets of a move: G10, G52, G92, G43.1.

@@ -266,8 +266,11 @@ void GcodeInterpreter::use_lengths() {
             return;
         }
     }
-    if (block_->code(path) == 640 && block_->value('P') != 0) {
+    const bool is_cubic = block_->code(motion) == 50;
+    if ((block_->code(path) == 640 || is_cubic) && block_->value('P') != 0) {
         use_start_unit('P');
+    } else if (is_cubic && block_->value('Q') != 0) {
+        use_start_unit('Q');
     }
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Converts block after block to canonical moves. Modes and tools: gcode_interpreter.cpp; offsets:
 // gcode_offsets.cpp; tool centre point control: gcode_tip.cpp; motion: gcode_motion.cpp; canned
-// cycles: gcode_cycle.cpp; threads and probing: gcode_thread.cpp; cutter compensation:
-// gcode_contour.cpp; saved modes: gcode_modes.cpp.
+// cycles: gcode_cycle.cpp; threads and probing: gcode_thread.cpp; splines: gcode_spline.cpp; cutter
+// compensation: gcode_contour.cpp; saved modes: gcode_modes.cpp.
 #pragma once
 
 #include <optional>
@@ -32,6 +32,10 @@ class GcodeInterpreter {
     [[nodiscard]] bool has_ended() const { return state_.has_ended; }
     /// Moves of cutter compensation wait for a next one, and LinuxCNC would not run them.
     [[nodiscard]] bool is_contour_open() const { return cutter_.is_beside(); }
+    /// G5.3 has not ended the points of G5.2, and LinuxCNC would not move along them.
+    [[nodiscard]] bool is_nurbs_open() const {
+        return state_.spline.is_open && !state_.spline.is_refused;
+    }
     /// Value of a numbered parameter of the control: 5220 the active work offset, 5400 the tool in
     /// the spindle, 5420 to 5428 the axis positions in the program's units and offsets.
     [[nodiscard]] std::optional<double> parameter(std::uint32_t index) const;
@@ -91,7 +95,8 @@ class GcodeInterpreter {
     /// Turns X and Y of a vector by the active work offset's angle, or back.
     void rotate(AxisPositions& vector, bool is_back = false) const;
     /// The position in the program's coordinates: without offsets and rotation.
-    [[nodiscard]] AxisPositions programmed_position() const;
+    [[nodiscard]] AxisPositions programmed_position() const { return to_program(state_.position); }
+    [[nodiscard]] AxisPositions to_program(const AxisPositions& position) const;
     [[nodiscard]] AxisPositions from_program(const AxisPositions& programmed) const;
     /// Takes X and Y of the block into a rotated target.
     void set_rotated_target(AxisPositions& target);
@@ -107,6 +112,24 @@ class GcodeInterpreter {
     /// The speed of the spindle for `word`; 0, and a fault, where none is known.
     double spindle_speed(const char* word);
     bool set_arc(Move& next);
+    /// True: this block belongs to a spline, and is done.
+    bool run_spline();
+    /// False, and a fault, where the block has what LinuxCNC refuses with splines or does
+    /// otherwise than its words say.
+    bool is_spline_block(const std::string& word);
+    void run_single_spline();
+    void add_nurbs_point();
+    /// False for wrong words; the fault is reported unless a skipped block may have set the feed.
+    bool read_nurbs_words(bool is_first);
+    void end_nurbs();
+    /// Moves along the curve through the control points, whose last is `last.target`.
+    void follow_spline(const std::string& word, const std::vector<SplinePoint>& points,
+                       std::uint32_t order, const Move& last);
+    void append_bend(const SplinePiece& piece, Move next);
+    /// A line, or the lines of a circle so large that its angles would lose digits.
+    void append_flat_bend(bool is_arc, Move next);
+    /// A position in the plane XY as a control point.
+    [[nodiscard]] SplinePoint spline_point(const AxisPositions& position, double weight) const;
     void run_thread();
     void probe();
     /// True, and a fault, if a sum with the position of this axis depends on what was probed.

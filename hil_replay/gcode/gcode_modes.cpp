@@ -43,6 +43,12 @@ void GcodeInterpreter::restore_modes(const GcodeState& saved) {
         fault("M72", "modes are restored under cutter compensation; write G40 before it");
         return;
     }
+    if (is_nurbs_open()) {
+        fault("M72", "modes are restored between G5.2 and G5.3; write G5.3 before it");
+        state_.spline.is_refused = true;
+        return;
+    }
+    state_.spline.has_tangent = false;
     if (saved.tool_offset != state_.tool_offset || saved.local_offset != state_.local_offset ||
         saved.control != state_.control) {
         fault("M72", "the tool offset, G52 or G92 changed since M70 or M73; write their words");

@@ -56,6 +56,9 @@ bool GcodeInterpreter::are_letters_taken(bool is_arc_mode) {
 void GcodeInterpreter::move() {
     const GcodeBlock& block = *block_;
     const std::int32_t written = block.code(motion);
+    if (run_spline()) {
+        return;
+    }
     if (block.code(non_modal) == 280 || block.code(non_modal) == 300) {
         move_home(block.code(non_modal) == 280 ? "G28" : "G30");
         return;
@@ -69,8 +72,7 @@ void GcodeInterpreter::move() {
     if (takes_axis_words(block)) {
         return;
     }
-    const bool has_axis = std::any_of(std::begin(kAxisLetters), std::end(kAxisLetters),
-                                      [&](char letter) { return block.has(letter); });
+    const bool has_axis = has_axis_word(block);
     const bool is_threading = is_thread(state_.motion);
     const bool has_arc = has_arc_word(block, state_.motion);
     if (cutter_.is_on() && state_.motion > 30 && state_.motion != 800 &&

@@ -71,8 +71,8 @@ void GcodeInterpreter::rotate(AxisPositions& vector, bool is_back) const {
 }
 
 /// Source: LinuxCNC 2.9, emccanon.cc: G92's offset turns with the program, the tool's does not.
-AxisPositions GcodeInterpreter::programmed_position() const {
-    AxisPositions out = state_.position;
+AxisPositions GcodeInterpreter::to_program(const AxisPositions& position) const {
+    AxisPositions out = position;
     for (std::uint32_t axis = 0; axis < machine_.axes.size(); ++axis) {
         out[axis] -= is_rotated() ? offset_of(axis) - state_.local_offset[axis] : offset_of(axis);
     }

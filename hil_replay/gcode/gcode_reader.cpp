@@ -100,6 +100,11 @@ class Reading {
                   "the program ends under cutter compensation, and LinuxCNC would not finish its "
                   "last move; end it with G40, M2 or M30");
         }
+        if (interpreter_.is_nurbs_open()) {
+            fault(std::min(next, own_lines_) - 1, "G5.2",
+                  "the program ends between G5.2 and G5.3, and LinuxCNC would not move along the "
+                  "curve; end it with G5.3");
+        }
         if (!has_ended() && flow_.is_in_call()) {
             fault(std::min(next, own_lines_) - 1, "O",
                   "the file ends inside a subroutine; end it with endsub, or M99 after M98");

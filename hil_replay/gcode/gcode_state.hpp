@@ -6,8 +6,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "core/base/sincos.hpp"
+#include "hil_replay/gcode/gcode_biarc.hpp"
 #include "hil_replay/gcode/gcode_reader.hpp"
 
 namespace axg {
@@ -22,6 +24,17 @@ struct CycleState {
     double r = 0, bottom = 0, dwell_s = 0, peck = 0;
     double first_height_mm = 0;  // machine coordinates
     bool is_in_row = false;
+};
+
+/// What G5 leaves to the next G5, and G5.2 to G5.3, in the program's unit and coordinates.
+struct SplineState {
+    bool has_tangent = false;  // the block before was G5
+    double next_i = 0, next_j = 0;
+    bool is_open = false;     // between G5.2 and G5.3
+    bool is_refused = false;  // for a fault that was reported
+    std::uint32_t order = 0;  // L; 0: not stated
+    std::vector<SplinePoint> points;
+    AxisPositions end{};  // the last point, in machine coordinates
 };
 
 struct GcodeState {
@@ -46,6 +59,7 @@ struct GcodeState {
     AxisPositions local_offset{}, kept_local_offset{};       // G52, G92; the second is for G92.3
     bool retracts_to_r = true;                               // G99, LinuxCNC's default; false: G98
     CycleState cycle;
+    SplineState spline;
     AxisPositions tool_offset{};  // of G43 or G43.1, 0 after G49; mm or rad
     // Tool centre point control: by G43.4 until another word of its group, by M428 until M429.
     bool has_length_control = false, has_kinematics_control = false;

@@ -9,7 +9,6 @@ using enum WordSupport;
 
 constexpr std::string_view kByHand = "boring that an operator ends by hand";
 constexpr std::string_view kProbe = "probing, read to its end";
-constexpr std::string_view kSpline = "spline; post it as lines or arcs";
 constexpr std::string_view kHomeWrite = "stores a position; use G53 G0";
 
 constexpr std::string_view kLathe = "roughing cycle of a lathe";
@@ -20,10 +19,10 @@ constexpr GcodeWordRule kRules[] = {
     {'G', 20, motion, read, "arc or helix, clockwise"},
     {'G', 30, motion, read, "arc or helix, counter-clockwise"},
     {'G', 40, non_modal, read, "dwell, P seconds"},
-    {'G', 50, motion, refused, kSpline},
-    {'G', 51, motion, refused, kSpline},
-    {'G', 52, motion, refused, kSpline},
-    {'G', 53, motion, refused, kSpline},
+    {'G', 50, motion, read, "cubic spline"},
+    {'G', 51, motion, read, "quadratic spline"},
+    {'G', 52, motion, read, "control point of a NURBS"},
+    {'G', 53, non_modal, read, "end of a NURBS: moves along it"},
     {'G', 62, motion, refused, "NURBS; post it as lines or arcs"},
     {'G', 70, count, refused, "lathe diameter mode"},
     {'G', 80, count, no_motion, "lathe radius mode: nothing to change"},

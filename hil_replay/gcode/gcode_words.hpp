@@ -11,8 +11,8 @@ namespace axg {
 
 /// A block may contain one word of each group. Source: LinuxCNC "G-code overview", modal groups.
 enum class ModalGroup : std::uint8_t {
-    non_modal,     // G4 G10 G28 G52 G53 G92
-    motion,        // G0..G3 G33 G38 G73 G80..G89
+    non_modal,     // G4 G5.3 G10 G28 G52 G53 G92
+    motion,        // G0..G3 G5..G5.2 G33 G38 G73 G80..G89
     plane,         // G17..G19
     distance,      // G90 G91
     arc_distance,  // G90.1 G91.1
