@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A program's canonical moves as text, for comparison with another interpreter. mm, degrees, s.
+// print_moves [--tip | --wrapped] [--lines] PROGRAM; --lines: each after its line in the program.
 #include <cstdio>
 #include <fstream>
 #include <initializer_list>
@@ -74,7 +75,7 @@ void print_move(const Machine& machine, const Move& move) {
     std::printf("\n");
 }
 
-int print_moves(const char* path, const Machine& machine, RotaryRule rule) {
+int print_moves(const char* path, const Machine& machine, RotaryRule rule, bool has_lines) {
     std::ifstream file(path, std::ios::binary);
     const std::string text(std::istreambuf_iterator<char>(file), {});
     GcodeOptions options;
@@ -89,6 +90,9 @@ int print_moves(const char* path, const Machine& machine, RotaryRule rule) {
         return 3;
     }
     for (const Move& move : result.program.moves) {
+        if (has_lines && move.kind != MoveKind::tool_change && move.kind != MoveKind::coordinates) {
+            std::printf("%u ", move.line);
+        }
         print_move(machine, move);
     }
     return 0;
@@ -98,11 +102,19 @@ int print_moves(const char* path, const Machine& machine, RotaryRule rule) {
 }  // namespace axg
 
 int main(int argc, char** argv) {
-    const std::string_view option = argc == 3 ? argv[1] : "";
-    if (argc != 2 && option != "--tip" && option != "--wrapped") {
-        return 2;
+    bool is_tip = false, is_wrapped = false, has_lines = false;
+    for (int i = 1; i + 1 < argc; ++i) {
+        const std::string_view option = argv[i];
+        is_tip = is_tip || option == "--tip";
+        is_wrapped = is_wrapped || option == "--wrapped";
+        has_lines = has_lines || option == "--lines";
+        if (option != "--tip" && option != "--wrapped" && option != "--lines") {
+            return 2;
+        }
     }
-    return axg::print_moves(
-        argv[argc - 1], option == "--tip" ? axg::tip_machine() : axg::boundless_machine(),
-        option == "--wrapped" ? axg::RotaryRule::wrapped : axg::RotaryRule::programmed);
+    return argc < 2 ? 2
+                    : axg::print_moves(
+                          argv[argc - 1], is_tip ? axg::tip_machine() : axg::boundless_machine(),
+                          is_wrapped ? axg::RotaryRule::wrapped : axg::RotaryRule::programmed,
+                          has_lines);
 }

@@ -26,6 +26,10 @@ INCH = 25.4  # mm: the unit of its tool table
 TIP_TOOLS = {1: 50, 2: 80}  # mm, of tests/support/motion_machine.hpp
 # Words of another machine's configuration: neither side is asked about them.
 LEFT_OUT = re.compile(r"(?i)\bM42[89]\b")
+# Lines that move along a spline, and how many moves each control point makes there.
+SPLINE = re.compile(r"(?i)g0*5(?:\.[013])?(?![\d.])")
+SPLINE_MOVES = 8
+COMMENT = re.compile(r"\([^)]*\)|;.*|\s")
 CALL = re.compile(r"N[\d.]+\s*([A-Z]\w*)\(([^)]*)\)")
 
 
@@ -72,6 +76,8 @@ class Canon:
             self.motions += [("feed", tap[:3] + before[3:]), ("feed", before)]
         elif name == "ARC_FEED":
             self.arc([float(v) for v in text.split(",")])
+        elif name == "NURBS_FEED":  # it prints the number of control points, and no end
+            self.motions.append(("spline", [float(text.split(",")[0])]))
         elif name == "DWELL":
             self.motions.append(("dwell", [float(text)]))
 
@@ -98,14 +104,22 @@ def of_linuxcnc(program, *options):
 
 
 def of_axguard(print_moves, program, *options):
-    done = subprocess.run([print_moves, *options, program], stdout=subprocess.PIPE,
+    done = subprocess.run([print_moves, "--lines", *options, program], stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE, text=True, check=False)
     if done.returncode != 0:
         return None, done.stderr
-    motions = []
+    text = pathlib.Path(program).read_text(encoding="latin-1").splitlines()
+    splines = {i + 1 for i, line in enumerate(text) if SPLINE.search(COMMENT.sub("", line))}
+    motions, last = [], 0
     for line in done.stdout.splitlines():
-        kind, *values = line.split()
+        number, kind, *values = line.split()
         values = [float(v) for v in values]
+        if int(number) in splines and kind in ("arc", "feed"):
+            count = motions.pop()[1][6] if last == number else 0
+            motions.append(("spline", values[:6] + [count + 1 / SPLINE_MOVES]))
+            last = number
+            continue
+        last = 0
         if kind == "arc":
             _, _, first, second, sweep = values[6:]
             turns = math.copysign(max(1, math.ceil(abs(sweep) / (2 * math.pi) - 1e-6)), sweep)
@@ -122,13 +136,17 @@ def without_rests(motions):
             if values[0] > 0:
                 out.append((kind, values))
             continue
-        if kind == "arc" or max(abs(a - b) for a, b in zip(values, at)) > 1e-9:
+        if kind in ("arc", "spline") or max(abs(a - b) for a, b in zip(values, at)) > 1e-9:
             out.append((kind, values))
         at = values[:6]
     return out
 
 
 def difference(ours, theirs):
+    """Of a spline they print no end: it is ours, and the motions after it tell."""
+    ends = iter([values[:6] for kind, values in ours if kind == "spline"])
+    theirs = [(kind, next(ends, []) + values if kind == "spline" else values)
+              for kind, values in theirs]
     ours, theirs = without_rests(ours), without_rests(theirs)
     for i, (one, other) in enumerate(zip(ours, theirs)):
         same = one[0] == other[0] and all(
@@ -240,11 +258,24 @@ def random_program(rng):
             f"o<part {label}> endsub [#2]\no<part{label}> call [{plain(-5, 5)}] [{plain(0, 2)}]\n"
             f"G0 X#<_value> Y#<own one> Z#31"))
 
+    def spline():
+        """Its end is told by the move after it, which names neither X nor Y."""
+        words = lambda letters: " ".join(f"{letter}{number(1, 9)}" for letter in letters)
+        point = lambda: f"X{number(-9, 9)} Y{number(-9, 9)} P{number(0.5, 2)}"
+        cubic = f"{words('IJ')} P-{plain(1, 9)} {words('Q')}"
+        points = [point() for _ in range(rng.randint(3, 6))]
+        return rng.choice((
+            f"G91 G5.1 {words('IJ')} X{number(1, 9)} Y-{plain(1, 9)}\nG90",
+            f"G91 G5 {cubic} {words('XY')}\nG5 P-{plain(1, 5)} Q{number(-3, 3)} {words('XY')}\nG90",
+            f"G5 {words('IJ')} {words('PQ')} {words('X')}",
+            f"G5.2 P{number(0.5, 2)} L{rng.randint(3, len(points))}\n" + "\n".join(points) +
+            "\nG5.3")) + f"\nG1 Z{number(-9, 9)}"
+
     for _ in range(rng.randint(3, 25)):
-        kind = rng.choice((0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 8, 9))
+        kind = rng.choice((0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 8, 9) + ((10,) if plane == 17 else ()))
         lines.append((lambda: f"G0 {some_axes()}", lambda: f"G1 {some_axes()} F{number(50, 500)}",
                       arc, full_circle, cycle, offset, modal,
-                      lambda: f"G4 P{number(0, 3)}", flow, feed_mode)[kind]())
+                      lambda: f"G4 P{number(0, 3)}", flow, feed_mode, spline)[kind]())
     return "\n".join(lines + ["M2", ""])
 
 
@@ -422,20 +453,21 @@ def main():
     seed, count = int(os.environ.get("AXG_SEED", "274")), int(os.environ.get("AXG_COUNT", "400"))
     print(f"seed {seed} (AXG_SEED overrides it), {count} random programs")
     rng = random.Random(seed)
-    faults, accepted, motions = [], 0, 0
+    faults, accepted, motions, splines = [], 0, 0, 0
     with tempfile.TemporaryDirectory() as folder:
         program = os.path.join(folder, "program.ngc")
         pathlib.Path(folder, TOOLS).write_text(
             "".join(f"T{n} P{n} Z0\n" for n in TOOL_NUMBERS), encoding="ascii")
 
         def compare(name):
-            nonlocal accepted, motions
+            nonlocal accepted, motions, splines
             theirs = of_linuxcnc(program)
             ours, why = of_axguard(print_moves, program)
             if theirs is None or ours is None:
                 return theirs, ours, why
             accepted += 1
             motions += len(theirs)
+            splines += sum(kind == "spline" for kind, _ in theirs)
             found = difference(ours, theirs)
             if found:
                 faults.append(f"{name}: {found}")
@@ -492,10 +524,9 @@ def main():
     for fault in faults[:10]:
         print(fault)
     print(f"{random_accepted} random programs and {accepted - random_accepted} real ones accepted "
-          f"by both, {motions} motions; {tip_motions} motions under tool centre point control; "
-          f"{wrapped_motions} with wrapped axes; "
-          f"{len(faults)} faults")
-    return 1 if faults or random_accepted < count / 4 else 0
+          f"by both, {motions} motions, {splines} of them splines; {tip_motions} motions under "
+          f"tool centre point control; {wrapped_motions} with wrapped axes; {len(faults)} faults")
+    return 1 if faults or random_accepted < count / 4 or splines < count / 4 else 0
 
 
 if __name__ == "__main__":
