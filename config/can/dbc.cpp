@@ -8,6 +8,7 @@
 #include <set>
 
 #include "config/can/dbc_lexer.hpp"
+#include "config/can/dbc_pages.hpp"
 #include "config/text/fault_list.hpp"
 #include "config/text/quote_text.hpp"
 
@@ -22,7 +23,6 @@ bool is_of_no_message(std::uint32_t id) noexcept {
     return id == 0xC0000000U || id == 0x40000000U;
 }
 
-constexpr const char* kExtended = "extended multiplexing";
 constexpr std::uint32_t kFrameFormatFd = 14, kFrameFormatExtendedFd = 15;  // of VFrameFormat
 // Words that begin a section. A list of names without an end sign ends before one of them.
 constexpr std::string_view kSections =
@@ -42,13 +42,6 @@ struct Remark {
     std::string_view signal;  // empty: of the whole message
     std::uint32_t value;
     int line;
-};
-
-/// SG_MUL_VAL_: the values of a multiplexor in whose frames a signal is.
-struct TurnValues {
-    std::uint32_t id;
-    std::string_view signal, selector;
-    std::uint32_t least, most;  // of all its ranges
 };
 
 class DbcParser {
@@ -169,14 +162,12 @@ class DbcParser {
     bool read_scale(DbcSignal& signal);
     bool read_value_type();
     bool read_type_reference();
-    bool read_turn_values();
-    bool read_values(TurnValues& values);
+    bool read_pages();
+    bool read_values(std::vector<SignalSelector::Range>& values);
     bool read_attribute();
     void apply_remarks();
     void apply_type(DbcSignal& signal, const Remark& remark, const std::string& key);
     void check_names();
-    void check_turns(DbcMessage& message);
-    void apply_turn_values(DbcMessage& message);
 
     FaultList faults_;
     std::string_view rest_;
@@ -188,7 +179,7 @@ class DbcParser {
     Dbc dbc_;
     std::size_t signal_count_ = 0;
     std::vector<Remark> types_, references_, formats_;
-    std::vector<TurnValues> turn_values_;
+    std::map<std::uint32_t, std::vector<DbcPages>> pages_;  // by identifier
 };
 
 void DbcParser::read_section() {
@@ -223,7 +214,7 @@ void DbcParser::read_section() {
     } else if (name == "SIG_VALTYPE_") {
         read_value_type();
     } else if (name == "SG_MUL_VAL_") {
-        read_turn_values();
+        read_pages();
     } else if (name == "SIG_TYPE_REF_") {
         read_type_reference();
     } else if (name == "BA_") {
@@ -318,7 +309,7 @@ bool DbcParser::read_signal(DbcMessage& message) {
     return true;
 }
 
-/// Reads an optional M, m5 or m5M. m5M (extended multiplexing) is refused: selected and selector.
+/// Reads an optional M, m5 or m5M.
 bool DbcParser::read_turn(DbcSignal& signal) {
     if (now_.kind != DbcToken::Kind::word) {
         return true;
@@ -338,8 +329,7 @@ bool DbcParser::read_turn(DbcSignal& signal) {
     if (read.ec != std::errc{} || read.ptr != end) {
         return fail("\":\", or M, or m and a number");
     }
-    signal.turn = DbcSignal::Turn::selected;
-    signal.refused = is_both ? kExtended : "";
+    signal.turn = is_both ? DbcSignal::Turn::both : DbcSignal::Turn::selected;
     advance();
     return true;
 }
@@ -384,8 +374,8 @@ bool DbcParser::read_value_type() {
     return true;
 }
 
-/// One range of SG_MUL_VAL_, such as 1-3: `values` covers it afterwards, too.
-bool DbcParser::read_values(TurnValues& values) {
+/// One range of SG_MUL_VAL_, such as 1-3.
+bool DbcParser::read_values(std::vector<SignalSelector::Range>& values) {
     constexpr const char* kWanted = "a range of multiplexor values, such as 1-3";
     std::uint32_t least = 0, most = 0;
     if (!take_whole(least, UINT32_MAX, kWanted)) {
@@ -401,27 +391,28 @@ bool DbcParser::read_values(TurnValues& values) {
     if (!take_whole(most, UINT32_MAX, kWanted)) {
         return false;
     }
-    values.least = std::min(values.least, least);
-    values.most = std::max(values.most, most);
+    values.push_back({least, most});
     return true;
 }
 
 /// SG_MUL_VAL_ 400 P0 Page 0-0, 4-7;
-bool DbcParser::read_turn_values() {
-    TurnValues values{.id = 0, .signal = {}, .selector = {}, .least = UINT32_MAX, .most = 0};
+bool DbcParser::read_pages() {
+    std::uint32_t id = 0;
+    DbcPages pages;
     advance();
-    if (!take_whole(values.id, UINT32_MAX, "the identifier of a message") ||
-        !take_word(values.signal, "the name of a signal") ||
-        !take_word(values.selector, "the name of its multiplexor") || !read_values(values)) {
+    if (!take_whole(id, UINT32_MAX, "the identifier of a message") ||
+        !take_word(pages.signal, "the name of a signal") ||
+        !take_word(pages.multiplexor, "the name of its multiplexor") ||
+        !read_values(pages.values)) {
         return false;
     }
     while (now_.is(",")) {
         advance();
-        if (!read_values(values)) {
+        if (!read_values(pages.values)) {
             return false;
         }
     }
-    turn_values_.push_back(values);
+    pages_[id].push_back(std::move(pages));
     return take(";");
 }
 
@@ -517,55 +508,6 @@ void DbcParser::apply_remarks() {
     }
 }
 
-/// A signal of one value of the message's one M keeps its meaning. A page of several values, and a
-/// page of a page, have none that a frame's selector could state.
-void DbcParser::apply_turn_values(DbcMessage& message) {
-    const bool is_extended =
-        std::any_of(message.signals.begin(), message.signals.end(),
-                    [](const DbcSignal& signal) { return signal.refused == kExtended; });
-    const auto is_root = [&message](std::string_view name) {
-        return std::any_of(message.signals.begin(), message.signals.end(), [&](const auto& other) {
-            return other.name == name && other.turn == DbcSignal::Turn::selector;
-        });
-    };
-    for (DbcSignal& signal : message.signals) {
-        const bool is_page = signal.turn == DbcSignal::Turn::selected;
-        bool is_named = false, has_roots = is_page;
-        std::uint32_t least = signal.selected_by, most = least;
-        for (const TurnValues& values : turn_values_) {
-            if (values.id == whole_id(message) && values.signal == signal.name) {
-                is_named = true;
-                has_roots = has_roots && is_root(values.selector);
-                least = std::min(least, values.least);
-                most = std::max(most, values.most);
-            }
-        }
-        const char* const of_named = !has_roots      ? kExtended
-                                     : least != most ? "several multiplexor values"
-                                                     : "";
-        const char* const of_other =
-            is_extended && is_page ? "a page without SG_MUL_VAL_, beside a multiplexed one" : "";
-        signal.refused += !signal.refused.empty() ? "" : is_named ? of_named : of_other;
-    }
-}
-
-/// A message with multiplexed signals needs exactly one selector.
-void DbcParser::check_turns(DbcMessage& message) {
-    std::size_t selectors = 0, selected = 0;
-    for (const DbcSignal& signal : message.signals) {
-        selectors += signal.turn == DbcSignal::Turn::selector ? 1 : 0;
-        selected += signal.turn == DbcSignal::Turn::selected ? 1 : 0;
-    }
-    if (selectors > 1 || (selected > 0 && selectors == 0)) {
-        for (DbcSignal& signal : message.signals) {
-            if (signal.refused.empty()) {
-                signal.refused = selectors > 1 ? "a message with two multiplexors"
-                                               : "a multiplexed message without multiplexor";
-            }
-        }
-    }
-}
-
 void DbcParser::check_names() {
     std::set<std::string_view> messages;
     for (DbcMessage& message : dbc_.messages) {
@@ -579,8 +521,7 @@ void DbcParser::check_names() {
                             "one signal of that name in a message");
             }
         }
-        apply_turn_values(message);
-        check_turns(message);
+        apply_pages(message, pages_[whole_id(message)]);
     }
 }
 

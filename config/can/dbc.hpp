@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "config/text/config_fault.hpp"
-#include "core/machine/can_layout.hpp"
+#include "core/machine/machine.hpp"
 
 namespace axg {
 
@@ -22,7 +22,8 @@ struct DbcSignal {
     enum class Turn : std::uint8_t {
         every,     // in every frame of the message
         selector,  // M: its value selects the signals in a frame
-        selected   // m5: only in frames whose selector is 5
+        selected,  // m5: only in frames whose selector is 5, or has a value of SG_MUL_VAL_
+        both       // m5M: selected, and selects in turn
     };
     std::string name;
     int line = 0;
@@ -34,8 +35,10 @@ struct DbcSignal {
     double minimum = 0, maximum = 0;  // both 0: not stated
     std::string unit;                 // bytes of the file, in whatever encoding it has
     Turn turn = Turn::every;
-    std::uint32_t selected_by = 0;
-    std::string refused;  // why it cannot be used; empty where it can
+    std::uint32_t selected_by = 0;               // the number after m
+    std::uint32_t multiplexor = kNoIndex;        // of the signals: the one that selects it
+    std::vector<SignalSelector::Range> pages{};  // by these values; sorted, apart
+    std::string refused;                         // why it cannot be used; empty where it can
 };
 
 struct DbcMessage {

@@ -21,30 +21,73 @@ std::string bits_outside(const DbcMessage& message) {
     return "bits outside the message's " + std::to_string(message.length_bytes) + " bytes";
 }
 
-std::string add_selector(const DbcMessage& message, const DbcSignal& signal, CanSignal& out) {
-    for (const DbcSignal& other : message.signals) {
-        if (signal.turn != DbcSignal::Turn::selected || other.turn != DbcSignal::Turn::selector) {
-            continue;
-        }
-        if (other.length_bits < 1 || other.length_bits > 32 || other.is_signed) {
-            return "a message whose multiplexor is signed, or longer than 32 bits";
-        }
-        if (other.length_bits < 32 && signal.selected_by >> other.length_bits != 0) {
+/// Adds the values of one multiplexor, inside those that were added before. Returns the fault.
+std::string add_level(const DbcMessage& message, const DbcSignal& multiplexor,
+                      const std::vector<SignalSelector::Range>& pages, SignalSelector& out,
+                      FrameBits& taken) {
+    const std::uint32_t length = multiplexor.length_bits;
+    if (length < 1 || length > 32 || multiplexor.type != SignalType::integer) {
+        return "a message whose multiplexor is a float, or longer than 32 bits";
+    }
+    CanSignal selector;
+    selector.start_bit = static_cast<std::uint16_t>(multiplexor.start_bit);
+    selector.length_bits = static_cast<std::uint8_t>(length);
+    selector.order = multiplexor.order;
+    FrameBits bits;
+    if (multiplexor.start_bit >= kFrameBitsMax ||
+        !covered_bits(selector, message.length_bytes * 8, bits)) {
+        return bits_outside(message);
+    }
+    if ((taken & bits).any()) {
+        return "multiplexors that share bits";
+    }
+    taken |= bits;
+    std::size_t used = 0;
+    for (std::uint32_t i = 0; i < out.level_count; ++i) {
+        used += out.levels[i].range_count;
+    }
+    if (used + pages.size() > kSelectorRangesMax) {
+        return "more than " + std::to_string(kSelectorRangesMax) + " ranges of multiplexor values";
+    }
+    // Values are not negative: a signed multiplexor has them without its sign bit, as read here.
+    const std::uint32_t bits_of_value = length - (multiplexor.is_signed ? 1U : 0U);
+    const auto most = static_cast<std::uint32_t>((std::uint64_t{1} << bits_of_value) - 1);
+    out.levels[out.level_count++] = {selector.start_bit, selector.length_bits, selector.order,
+                                     static_cast<std::uint8_t>(pages.size())};
+    for (const SignalSelector::Range& range : pages) {
+        if (range.least > most) {
             return "a multiplexor value that its multiplexor cannot represent";
         }
-        CanSignal selector;
-        selector.start_bit = static_cast<std::uint16_t>(other.start_bit);
-        selector.length_bits = static_cast<std::uint8_t>(other.length_bits);
-        selector.order = other.order;
-        FrameBits bits;
-        if (other.start_bit >= kFrameBitsMax ||
-            !covered_bits(selector, message.length_bytes * 8, bits)) {
-            return bits_outside(message);
-        }
-        out.selector = {selector.start_bit, selector.length_bits, selector.order,
-                        signal.selected_by};
+        out.ranges[used++] = {range.least, std::min(range.most, most)};
     }
     return "";
+}
+
+/// The multiplexors of a signal, the outermost first, each with its values.
+std::string add_selector(const DbcMessage& message, const DbcSignal& signal, SignalSelector& out) {
+    std::array<const DbcSignal*, kSelectorLevelsMax> pages{};
+    std::uint32_t depth = 0;
+    for (const DbcSignal* at = &signal; at->multiplexor != kNoIndex;
+         at = &message.signals[at->multiplexor]) {
+        if (depth == kSelectorLevelsMax) {  // or a circle
+            return "more than " + std::to_string(kSelectorLevelsMax) +
+                   " multiplexors, one in the other";
+        }
+        if (!at->refused.empty()) {
+            return at->refused;
+        }
+        pages[depth++] = at;
+    }
+    if (depth > 0 && !message.signals[pages[depth - 1]->multiplexor].refused.empty()) {
+        return message.signals[pages[depth - 1]->multiplexor].refused;
+    }
+    FrameBits taken;
+    std::string fault;
+    while (depth > 0 && fault.empty()) {
+        const DbcSignal& page = *pages[--depth];
+        fault = add_level(message, message.signals[page.multiplexor], page.pages, out, taken);
+    }
+    return fault;
 }
 
 }  // namespace
@@ -82,7 +125,7 @@ std::string to_can_signal(const DbcMessage& message, const DbcSignal& signal, Ca
     if (signal.start_bit >= kFrameBitsMax || !covered_bits(made, message.length_bytes * 8, bits)) {
         return bits_outside(message);
     }
-    std::string refused = add_selector(message, signal, made);
+    std::string refused = add_selector(message, signal, made.selector);
     if (refused.empty()) {
         out = made;
     }

@@ -40,6 +40,27 @@ struct Named {
     int line = 0;
 };
 
+/// Whether no frame is of both: some run of bits is to have one value here, another there.
+bool are_apart(const SignalSelector& a, const SignalSelector& b) noexcept {
+    const SignalSelector::Range* of_a = a.ranges.data();
+    for (std::uint32_t i = 0; i < a.level_count; of_a += a.levels[i++].range_count) {
+        const SignalSelector::Range* of_b = b.ranges.data();
+        for (std::uint32_t j = 0; j < b.level_count; of_b += b.levels[j++].range_count) {
+            SignalSelector::Level same = b.levels[j];
+            same.range_count = a.levels[i].range_count;
+            const auto meets = [&](const SignalSelector::Range& one) {
+                return std::any_of(of_b, of_b + b.levels[j].range_count, [&](const auto& other) {
+                    return one.least <= other.most && other.least <= one.most;
+                });
+            };
+            if (same == a.levels[i] && std::none_of(of_a, of_a + a.levels[i].range_count, meets)) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
 class DbcReader {
   public:
     DbcReader(MapReader& can, MachineDraft& draft, const Dbc& dbc, std::string file)
@@ -314,8 +335,8 @@ void DbcReader::read_counters() {
     }
 }
 
-/// Rejects signals that share bits (states may), and a message of which only some of the signals
-/// are multiplexed.
+/// Rejects signals that share bits (states may), a message of which only some of the signals are
+/// multiplexed, and pages that overlap in part: one frame would be of both.
 void DbcReader::check_frames() {
     for (std::size_t i = 0; i < named_.size(); ++i) {
         for (std::size_t j = 0; j < i; ++j) {
@@ -324,11 +345,18 @@ void DbcReader::check_frames() {
             if (a.message != b.message) {
                 continue;
             }
-            if ((a.wire.selector.length_bits == 0) != (b.wire.selector.length_bits == 0)) {
+            if ((a.wire.selector.level_count == 0) != (b.wire.selector.level_count == 0)) {
                 report(b.path, b.line,
                        "a multiplexed signal and one in every frame of " + a.message->name +
                            place(b.signal->line),
                        "all signals of a message multiplexed, or none");
+                continue;
+            }
+            if (a.wire.selector != b.wire.selector &&
+                !are_apart(a.wire.selector, b.wire.selector)) {
+                report(b.path, b.line,
+                       "pages of which some are those of " + a.path + place(b.signal->line),
+                       "the same pages, or no page of it");
                 continue;
             }
             const bool is_state =

@@ -163,6 +163,27 @@ void add_pairs(Lines& lines, const Machine& machine) {
     }
 }
 
+/// One value has the key that it always had; further ranges and levels have keys of their own.
+void add_selector(Lines& lines, const std::string& key, const SignalSelector& selector) {
+    std::uint32_t range = 0;
+    for (std::uint32_t i = 0; i < std::max<std::uint32_t>(selector.level_count, 1); ++i) {
+        const SignalSelector::Level& level = selector.levels[i];
+        const std::string at = i == 0 ? key : key + '.' + std::to_string(i);
+        lines.add(at + ".start", level.start_bit);
+        lines.add(at + ".length", level.length_bits);
+        lines.add(at + ".order", static_cast<std::uint32_t>(level.order));
+        lines.add(at + ".value", selector.ranges[range].least);
+        for (std::uint32_t j = 0; j < level.range_count; ++j, ++range) {
+            const SignalSelector::Range& one = selector.ranges[range];
+            if (level.range_count > 1 || one.least != one.most) {
+                const std::string values = at + ".values." + std::to_string(j);
+                lines.add(values + ".least", one.least);
+                lines.add(values + ".most", one.most);
+            }
+        }
+    }
+}
+
 void add_signals(Lines& lines, const CanLayout& can) {
     for (const CanSignal& signal : can.signals) {
         const std::string key = "can.signals." + std::to_string(signal.axis) + '.' +
@@ -177,11 +198,7 @@ void add_signals(Lines& lines, const CanLayout& can) {
         lines.add(key + ".frame_bytes", signal.frame_bytes);
         lines.add(key + ".flexible", signal.is_flexible ? 1U : 0U);
         lines.add(key + ".mark", signal.mark);
-        const SignalSelector& selector = signal.selector;
-        lines.add(key + ".selector.start", selector.start_bit);
-        lines.add(key + ".selector.length", selector.length_bits);
-        lines.add(key + ".selector.order", static_cast<std::uint32_t>(selector.order));
-        lines.add(key + ".selector.value", selector.value);
+        add_selector(lines, key + ".selector", signal.selector);
     }
 }
 

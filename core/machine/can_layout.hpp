@@ -13,8 +13,10 @@
 
 namespace axg {
 
-inline constexpr std::uint32_t kLookAheadAxesMax = 7;  // 6 + 8 * 7 = 62 bytes
-inline constexpr std::uint32_t kSignalsMax = 96;       // of all frames together
+inline constexpr std::uint32_t kLookAheadAxesMax = 7;   // 6 + 8 * 7 = 62 bytes
+inline constexpr std::uint32_t kSignalsMax = 96;        // of all frames together
+inline constexpr std::uint32_t kSelectorLevelsMax = 3;  // a multiplexor within a page, twice
+inline constexpr std::uint32_t kSelectorRangesMax = 8;  // of values, of all levels together
 // Axis frames of a sample. Drives: separate positions and status words; signals: one a frame, and
 // four of the board itself.
 inline constexpr std::uint32_t kAxisFramesMax = 2 * kAxesMax + 4;
@@ -34,12 +36,26 @@ enum class SignalRole : std::uint8_t {
     drive_status  // of an axis: status word 0x6041; mark is the bit mask for homed, 0: always
 };
 
-/// A frame carries a signal only while these bits hold this value (a DBC file's multiplexor).
+/// A frame carries a signal only while each of these runs of bits has one of its values (a DBC
+/// file's multiplexors, the outermost first). Ranges are sorted and do not touch, so that equal
+/// selectors are of the same frames.
 struct SignalSelector {
-    std::uint16_t start_bit = 0;
-    std::uint8_t length_bits = 0;  // 0: the signal is in every frame
-    ByteOrder order = ByteOrder::little;
-    std::uint32_t value = 0;
+    struct Level {
+        std::uint16_t start_bit = 0;
+        std::uint8_t length_bits = 0;
+        ByteOrder order = ByteOrder::little;
+        std::uint8_t range_count = 0;  // of `ranges`, after those of the levels before
+
+        friend bool operator==(const Level&, const Level&) = default;
+    };
+    struct Range {
+        std::uint32_t least = 0, most = 0;
+
+        friend bool operator==(const Range&, const Range&) = default;
+    };
+    std::uint8_t level_count = 0;  // 0: the signal is in every frame
+    std::array<Level, kSelectorLevelsMax> levels{};
+    std::array<Range, kSelectorRangesMax> ranges{};
 
     friend bool operator==(const SignalSelector&, const SignalSelector&) = default;
 };

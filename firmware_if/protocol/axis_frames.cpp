@@ -238,8 +238,8 @@ std::uint32_t slot_of(const AxisFrameSet& set, const CanFrame& frame) noexcept {
             continue;
         }
         // A frame of another length has no valid selector; the decoder refuses it.
-        if (selector.length_bits == 0 || frame.length_bytes != set.frame_bytes[slot] ||
-            detail::get_bits(detail::bits_of(selector), frame.data.data()) == selector.value) {
+        if (selector.level_count == 0 || frame.length_bytes != set.frame_bytes[slot] ||
+            detail::selects(selector, frame.data.data())) {
             break;
         }
     }

@@ -34,14 +34,26 @@ bool is_inside(const detail::BitRun& run, std::uint32_t frame_bytes) noexcept {
     return first + run.length_bits <= frame_bytes * 8U;
 }
 
+bool fits_frame(const SignalSelector& selector, std::uint8_t bytes) noexcept {
+    constexpr std::uint8_t kSelectorBitsMax = 32;
+    std::uint32_t ranges = 0;
+    for (std::uint32_t i = 0; i < selector.level_count; ++i) {
+        if (i >= kSelectorLevelsMax || selector.levels[i].range_count == 0 ||
+            selector.levels[i].length_bits > kSelectorBitsMax ||
+            !is_inside(detail::bits_of(selector.levels[i]), bytes)) {
+            return false;
+        }
+        ranges += selector.levels[i].range_count;
+    }
+    return ranges <= kSelectorRangesMax;
+}
+
 bool fits_frame(const CanLayout& can, const CanSignal& signal) noexcept {
-    constexpr std::uint8_t kExactBitsMax = 53, kSelectorBitsMax = 32;
+    constexpr std::uint8_t kExactBitsMax = 53;
     const std::uint8_t bytes = frame_bytes_of(can, signal);
     const std::uint8_t most = signal.type == SignalType::integer ? kExactBitsMax : 64;
     return bytes <= 64 && signal.length_bits >= 1 && signal.length_bits <= most &&
-           signal.selector.length_bits <= kSelectorBitsMax &&
-           is_inside(detail::bits_of(signal), bytes) &&
-           is_inside(detail::bits_of(signal.selector), bytes);
+           is_inside(detail::bits_of(signal), bytes) && fits_frame(signal.selector, bytes);
 }
 
 /// Whether the arrays of a set hold the layout. The reader of machine files (config/can) checks

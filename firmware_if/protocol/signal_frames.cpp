@@ -200,8 +200,7 @@ std::uint32_t fill_signals(const AxisFrameSet& set, const AxisSnapshot& snapshot
         frame.extended = is_extended_id(set.ids[slot]);
         frame.length_bytes = set.frame_bytes[slot];
         frame.fd = frame.bit_rate_switch = set.is_flexible[slot];
-        const SignalSelector& selector = set.selectors[slot];
-        detail::put_bits(detail::bits_of(selector), selector.value, frame.data.data());
+        detail::put_selector(set.selectors[slot], frame.data.data());
     }
     for (const bool writes_no : {true, false}) {
         for (std::uint32_t i = 0; i < set.signal_count; ++i) {

@@ -43,8 +43,8 @@ struct BitRun {
 [[nodiscard]] constexpr BitRun bits_of(const CanSignal& signal) noexcept {
     return {signal.start_bit, signal.length_bits, signal.order};
 }
-[[nodiscard]] constexpr BitRun bits_of(const SignalSelector& selector) noexcept {
-    return {selector.start_bit, selector.length_bits, selector.order};
+[[nodiscard]] constexpr BitRun bits_of(const SignalSelector::Level& level) noexcept {
+    return {level.start_bit, level.length_bits, level.order};
 }
 
 /// Position of bit number i, counted from the start bit in the direction of the byte order:
@@ -77,6 +77,33 @@ constexpr void put_bits(const BitRun& run, std::uint64_t bits, std::uint8_t* dat
         const bool is_set = ((bits >> weight) & 1U) != 0;
         data[at / 8U] =
             static_cast<std::uint8_t>(is_set ? data[at / 8U] | mask : data[at / 8U] & ~mask);
+    }
+}
+
+/// Whether a frame is of the selector: each level has one of its values.
+[[nodiscard]] constexpr bool selects(const SignalSelector& selector,
+                                     const std::uint8_t* data) noexcept {
+    std::uint32_t range = 0;
+    for (std::uint32_t level = 0; level < selector.level_count; ++level) {
+        const std::uint64_t value = get_bits(bits_of(selector.levels[level]), data);
+        bool is_of_level = false;
+        for (std::uint32_t i = 0; i < selector.levels[level].range_count; ++i, ++range) {
+            is_of_level |=
+                selector.ranges[range].least <= value && value <= selector.ranges[range].most;
+        }
+        if (!is_of_level) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/// Makes a frame one of the selector, by the least value of each level.
+constexpr void put_selector(const SignalSelector& selector, std::uint8_t* data) noexcept {
+    std::uint32_t range = 0;
+    for (std::uint32_t level = 0; level < selector.level_count; ++level) {
+        put_bits(bits_of(selector.levels[level]), selector.ranges[range].least, data);
+        range += selector.levels[level].range_count;
     }
 }
 

@@ -118,10 +118,25 @@ std::string id_text(std::uint32_t id) {
                               : fmt::format("0x{:03X}", id);
 }
 
+/// The values of each multiplexor in whose frames a signal is: ", page 3", ", page 0, 3-5 in 2".
+std::string page_text(const SignalSelector& selector) {
+    std::string out;
+    std::uint32_t range = 0;
+    for (std::uint32_t level = 0; level < selector.level_count; ++level) {
+        std::string values;
+        for (std::uint32_t i = 0; i < selector.levels[level].range_count; ++i, ++range) {
+            const auto [least, most] = selector.ranges[range];
+            values += values.empty() ? "" : ", ";
+            values += least == most ? fmt::format("{}", least) : fmt::format("{}-{}", least, most);
+        }
+        out = out.empty() ? values : values + " in " + out;
+    }
+    return out.empty() ? out : ", page " + out;
+}
+
 void print(const CheckReport& report, const CanSignal& signal, std::uint8_t frame_bytes) {
     const Machine& machine = report.loaded.machine;
-    const std::string page =
-        signal.selector.length_bits == 0 ? "" : fmt::format(", page {}", signal.selector.value);
+    const std::string page = page_text(signal.selector);
     fmt::print(
         report.words, "  {:<14} {}, {:>2} bytes{}  {:>3}|{:<2} {} {}{}  {}\n",
         (has_axis(signal.role) ? machine.axes[signal.axis].name + " " : "") + to_text(signal.role),

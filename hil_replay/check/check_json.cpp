@@ -42,6 +42,24 @@ Json describe_axis(const Axis& axis, double blind_speed) {
              blind_speed < axis.speed_max ? Json(blind_speed * unit) : Json(nullptr)}};
 }
 
+/// One value: page. Otherwise pages: a list for each multiplexor, the outermost first, of ranges.
+void add_pages(Json& facts, const SignalSelector& selector) {
+    const SignalSelector::Range& first = selector.ranges[0];
+    if (selector.level_count == 1 && selector.levels[0].range_count == 1 &&
+        first.least == first.most) {
+        facts["page"] = first.least;
+        return;
+    }
+    std::uint32_t range = 0;
+    for (std::uint32_t level = 0; level < selector.level_count; ++level) {
+        auto values = Json::array();
+        for (std::uint32_t i = 0; i < selector.levels[level].range_count; ++i, ++range) {
+            values.push_back({selector.ranges[range].least, selector.ranges[range].most});
+        }
+        facts["pages"].push_back(std::move(values));
+    }
+}
+
 Json facts_of(const Machine& machine, const CanSignal& signal, std::uint8_t frame_bytes) {
     Json facts{{"says", to_text(signal.role)}};
     if (has_axis(signal.role)) {
@@ -61,9 +79,7 @@ Json facts_of(const Machine& machine, const CanSignal& signal, std::uint8_t fram
     } else if (signal.role != SignalRole::tool) {
         facts["mark"] = signal.mark;
     }
-    if (signal.selector.length_bits != 0) {
-        facts["page"] = signal.selector.value;
-    }
+    add_pages(facts, signal.selector);
     return facts;
 }
 

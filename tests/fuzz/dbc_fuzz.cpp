@@ -26,10 +26,14 @@ void check_signal(const axg::DbcMessage& message, const axg::DbcSignal& signal) 
     if (axg::make_frame_set(machine).axis_count != 1) {
         std::abort();
     }
-    const axg::CanFrame frame;
+    axg::CanFrame frame;
     const double value = axg::detail::value_of(wire, axg::detail::get_signal(wire, &frame.data[0]));
     if (!std::isfinite(value)) {
         std::abort();  // a frame of zeros is a number in every signal
+    }
+    axg::detail::put_selector(wire.selector, &frame.data[0]);
+    if (!axg::detail::selects(wire.selector, &frame.data[0])) {
+        std::abort();  // a board can send the signal
     }
 }
 

@@ -49,11 +49,65 @@ def line_of(chance, name, turn, signal):
             f"({factor!r},{offset!r}) [0|0] \"\" Guard\n")
 
 
+def ranges_of(chance, values):
+    """Some of the values as SG_MUL_VAL_ writes them, and one of them."""
+    chosen = sorted(chance.sample(values, chance.randint(1, len(values))))
+    pairs = [[value, value] for value in chosen]
+    if chance.random() < 0.5:  # as few ranges as there can be
+        joined = []
+        for value in chosen:
+            if joined and joined[-1][1] + 1 == value:
+                joined[-1][1] = value
+            else:
+                joined.append([value, value])
+        pairs = joined
+    return ", ".join(f"{least}-{most}" for least, most in pairs), chance.choice(chosen)
+
+
+def extended_signals(chance, can_id, size):
+    """The signals of a message with one or two M, and multiplexors within pages; types; pages."""
+    taken, multiplexors, lines, types, pages = set(), [], "", "", ""
+    for number in range(chance.randint(2, 4)):
+        # No more ranges than a selector holds: 4 of 3 bits, 2 of 2, and one of 1.
+        length, little = chance.randint(1, 3 if number == 0 else 2), chance.random() < 0.5
+        free = [start for start in range(8 * size)
+                if not taken.intersection(bits_of(start, length, little)) and
+                max(bits_of(start, length, little)) < 8 * size]
+        if not free:
+            break
+        start = chance.choice(free)
+        taken.update(bits_of(start, length, little))
+        name, turn = f"Mux{number}", "M"
+        if multiplexors and (number > 1 or chance.random() < 0.6):
+            other, values = chance.choice(multiplexors[:2])
+            text, value = ranges_of(chance, values)
+            turn = f"m{value}M"
+            pages += f"SG_MUL_VAL_ {can_id} {name} {other} {text};\n"
+        sign, bits = ("-", length - 1) if length > 1 and chance.random() < 0.3 else ("+", length)
+        multiplexors.append((name, list(range(2 ** bits))))
+        lines += (f" SG_ {name} {turn} : {start}|{length}@{int(little)}{sign} "
+                  f"(1,0) [0|0] \"\" Guard\n")
+    for number in range(chance.randint(1, 6)):
+        signal = random_signal(chance, size, taken)
+        if signal is None:
+            continue
+        name, turn = f"S{number}", ""
+        if chance.random() < 0.8:
+            other, values = chance.choice(multiplexors)
+            text, value = ranges_of(chance, values)
+            turn = f"m{value} "
+            pages += f"SG_MUL_VAL_ {can_id} {name} {other} {text};\n"
+        lines += line_of(chance, name, turn, signal)
+        if signal[3] != "int":
+            types += f"SIG_VALTYPE_ {can_id} {name} : {1 + (signal[3] == 'double')};\n"
+    return lines, types, pages
+
+
 def random_dbc(chance):
     """The text of a DBC file, and the length of each message by its id as the file writes it: bit
     31 marks 29 bits, and two messages have one number in both kinds."""
     text = 'VERSION ""\n\nNS_ :\n\tCM_\n\nBS_:\n\nBU_: Board Guard\n\n'
-    types = ""
+    types = values = ""
     lengths = {}
     standard = chance.sample(range(1, 2048), 4)
     extended = [standard[0], *chance.sample(range(2048, 1 << 29), 3)]
@@ -61,6 +115,12 @@ def random_dbc(chance):
         size = chance.choice(LENGTHS)
         lengths[can_id] = size
         text += f"BO_ {can_id} M{number}: {size} Board\n"
+        if chance.random() < 0.3:
+            lines, more_types, more_values = extended_signals(chance, can_id, size)
+            text += lines + "\n"
+            types += more_types
+            values += more_values
+            continue
         common = set()
         selector = None
         if chance.random() < 0.4:
@@ -82,7 +142,7 @@ def random_dbc(chance):
                     if signal[3] != "int":
                         types += f"SIG_VALTYPE_ {can_id} {name} : {1 + (signal[3] == 'double')};\n"
         text += "\n"
-    return text + types, lengths
+    return text + types + values, lengths
 
 
 def ours(program, path, frames):
@@ -121,11 +181,29 @@ def same(one, other):
     return one == other or abs(one - other) <= 1e-12 * max(abs(one), abs(other))
 
 
+def on_a_page(chance, message, data):
+    """The frame, each of its multiplexors with the value of some page: chance meets few."""
+    data = bytearray(data)
+    for signal in message.signals:
+        values = sorted({value for other in message.signals
+                         if other.multiplexer_signal == signal.name
+                         for value in other.multiplexer_ids or []})
+        if not values:
+            continue
+        value, little = chance.choice(values), signal.byte_order == "little_endian"
+        bits = bits_of(signal.start, signal.length, little)
+        for weight, bit in enumerate(bits if little else reversed(bits)):
+            data[bit // 8] &= ~(1 << bit % 8)
+            data[bit // 8] |= (value >> weight & 1) << bit % 8
+    return bytes(data)
+
+
 def compare(program, path, database, lengths, chance):
-    """Values compared, and how many of them lie in a page."""
+    """How many values were compared."""
+    messages = {wire_id(message): message for message in database.messages}
     frames = [(can_id, chance.randbytes(size))
               for can_id, size in lengths.items() for _ in range(20)]
-    messages = {wire_id(message): message for message in database.messages}
+    frames += [(can_id, on_a_page(chance, messages[can_id], data)) for can_id, data in frames]
     compared = 0
     for (can_id, data), answer in zip(frames, ours(program, path, frames), strict=True):
         try:

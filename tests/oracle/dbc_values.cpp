@@ -24,10 +24,7 @@ void print_frame(const axg::Dbc& dbc, std::uint32_t id, const axg::CanFrame& fra
                 !axg::to_can_signal(message, signal, wire).empty()) {
                 continue;
             }
-            const axg::SignalSelector& selector = wire.selector;
-            if (selector.length_bits == 0 ||
-                axg::detail::get_bits(axg::detail::bits_of(selector), frame.data.data()) ==
-                    selector.value) {
+            if (axg::detail::selects(wire.selector, frame.data.data())) {
                 const std::int64_t raw = axg::detail::get_signal(wire, frame.data.data());
                 std::printf("%s %a\n", signal.name.c_str(), axg::detail::value_of(wire, raw));
             }

@@ -93,12 +93,17 @@ class ForeignFrames : public testing::TestWithParam<const char*> {
     std::string paper = folder + "/paper-trunnion.yaml";
 };
 
-/// With Linear and Rest, X and C under identifiers of 29 bits; one has a number of 11 bits too.
+/// With Linear and Rest under identifiers of 29 bits, one with a number of 11 bits too; Z is under
+/// several values, and C in a page of a page.
 std::string extended_dbc() {
     std::string text = kDbc;
     text.replace(text.find("BO_ 385"), 7, "BO_ 2566848897");  // 0x80000000 + 0x18FF0181
     text.replace(text.find("BO_ 386"), 7, "BO_ 2147484033");  // 0x80000000 + 0x181
-    return text;
+    text.replace(text.find("m3 : 8|32"), 9, "m4 : 48|32");
+    return text +
+           " SG_ Sub m3M : 40|8@1+ (1,0) [0|0] \"\" Guard\n"
+           "SG_MUL_VAL_ 2147484033 Z Page 1-1, 5-7;\nSG_MUL_VAL_ 2147484033 A Page 2-2;\n"
+           "SG_MUL_VAL_ 2147484033 Sub Page 3-3;\nSG_MUL_VAL_ 2147484033 C Sub 4-9;\n";
 }
 std::string extended_drives() {
     std::string text = kDriveSection;
@@ -248,7 +253,13 @@ TEST_F(ForeignFrames, CheckSaysWhereTheAxesStand) {
     ASSERT_EQ(shop.run("check dbc.yaml --engine cpu --mesh-root " + folder), kExitClean)
         << shop.err;
     EXPECT_NE(shop.out.find("Y position     0x18FF0181,  8 bytes"), std::string::npos) << shop.out;
-    EXPECT_NE(shop.out.find("0x00000181, 12 bytes, page 3"), std::string::npos) << shop.out;
+    EXPECT_NE(shop.out.find("0x00000181, 12 bytes, page 1, 5-7 "), std::string::npos) << shop.out;
+    EXPECT_NE(shop.out.find("0x00000181, 12 bytes, page 4-9 in 3 "), std::string::npos);
+    ASSERT_EQ(shop.run("check dbc.yaml --engine cpu --json --mesh-root " + folder), kExitClean);
+    const Json signals = Json::parse(shop.out)["frames"]["signals"];
+    EXPECT_EQ(signals[2]["pages"], Json::parse("[[[1, 1], [5, 7]]]"));
+    EXPECT_EQ(signals[3]["page"], 2);
+    EXPECT_EQ(signals[4]["pages"], Json::parse("[[[3, 3]], [[4, 9]]]"));
     ASSERT_EQ(shop.run("check drives.yaml --engine cpu --json --mesh-root " + folder), kExitClean);
     EXPECT_EQ(Json::parse(shop.out)["guard"]["obeyed_by"], "board");
     EXPECT_FALSE(Json::parse(shop.out)["guard"].contains("not_obeyed"));

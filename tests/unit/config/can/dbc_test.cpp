@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "config/can/dbc_signal.hpp"
 #include "tests/support/dbc_text.hpp"
 
 namespace axg {
@@ -56,7 +57,8 @@ TEST(DbcFile, SaysWhatItsLinesSay) {
     EXPECT_EQ(pages.signals[0].turn, DbcSignal::Turn::selector);
     EXPECT_EQ(pages.signals[2].turn, DbcSignal::Turn::selected);
     EXPECT_EQ(pages.signals[2].selected_by, 1U);
-    EXPECT_EQ(pages.signals[3].refused, "extended multiplexing");
+    EXPECT_EQ(pages.signals[3].turn, DbcSignal::Turn::both);
+    EXPECT_EQ(pages.signals[3].multiplexor, 0U);
     EXPECT_TRUE(dbc.messages[3].is_extended);
     EXPECT_EQ(dbc.messages[3].id, 129U);
 }
@@ -108,37 +110,117 @@ TEST(DbcFile, WhatRestatesASignalKeepsItFromUse) {
     EXPECT_EQ(orphan.messages[0].signals[0].refused, "a multiplexed message without multiplexor");
     const Dbc two = read(
         "BO_ 1 M: 8 N\n SG_ S M : 0|8@1+ (1,0) [0|0] \"\" N\n"
-        " SG_ T M : 8|8@1+ (1,0) [0|0] \"\" N\n");
-    EXPECT_EQ(two.messages[0].signals[0].refused, "a message with two multiplexors");
+        " SG_ T M : 8|8@1+ (1,0) [0|0] \"\" N\n SG_ P m0 : 16|8@1+ (1,0) [0|0] \"\" N\n");
+    EXPECT_EQ(two.messages[0].signals[0].refused, "") << "each M is in every frame";
+    EXPECT_EQ(two.messages[0].signals[2].refused,
+              "a page without SG_MUL_VAL_, beside a second multiplexor");
 }
 
-// A page whose selector is not one value of the one M would be read in frames of another page.
-TEST(DbcFile, APageOfOneValueOfTheOneMultiplexorIsUsed) {
-    const std::string message =
-        "BO_ 1 M: 8 N\n SG_ S M : 0|8@1+ (1,0) [0|0] \"\" N\n"
-        " SG_ A m1 : 8|8@1+ (1,0) [0|0] \"\" N\n SG_ B m2M : 16|8@1+ (1,0) [0|0] \"\" N\n"
-        " SG_ C m1 : 24|8@1+ (1,0) [0|0] \"\" N\n SG_ D : 32|8@1+ (1,0) [0|0] \"\" N\n";
-    const auto reason = [&message](std::size_t signal, const std::string& more) {
-        return read(message + more).messages[0].signals[signal].refused;
+/// One message: M at bit 0, m2M and m7M within it, and pages.
+const std::string kPages =
+    "BO_ 1 M: 8 N\n SG_ S M : 0|8@1+ (1,0) [0|0] \"\" N\n"
+    " SG_ A m1 : 8|8@1+ (1,0) [0|0] \"\" N\n SG_ B m2M : 16|8@1+ (1,0) [0|0] \"\" N\n"
+    " SG_ C m1 : 24|8@1+ (1,0) [0|0] \"\" N\n SG_ D : 32|8@1+ (1,0) [0|0] \"\" N\n"
+    " SG_ E m7M : 40|8@1+ (1,0) [0|0] \"\" N\n SG_ F m0 : 48|8@1+ (1,0) [0|0] \"\" N\n";
+
+/// Why a signal of kPages cannot be used with these lines added; empty: it can.
+std::string refusal(std::size_t signal, const std::string& lines, CanSignal& out) {
+    const Dbc dbc = read(kPages + lines);
+    return to_can_signal(dbc.messages[0], dbc.messages[0].signals[signal], out);
+}
+std::string refusal(std::size_t signal, const std::string& lines) {
+    CanSignal out;
+    return refusal(signal, lines, out);
+}
+
+// A page whose multiplexor is not known would be read in frames of another page.
+TEST(DbcFile, APageOfAnUnknownMultiplexorIsRefused) {
+    const std::string without = "a page without SG_MUL_VAL_, beside a second multiplexor";
+    EXPECT_EQ(refusal(1, ""), without) << "of S, B or E";
+    EXPECT_EQ(refusal(0, ""), "") << "in every frame";
+    EXPECT_EQ(refusal(4, ""), "") << "in every frame";
+    EXPECT_EQ(refusal(1, "SG_MUL_VAL_ 1 A S 1-1;\n"), "");
+    EXPECT_EQ(refusal(3, "SG_MUL_VAL_ 1 A S 1-1;\n"), without);
+    EXPECT_EQ(refusal(1, "SG_MUL_VAL_ 1 A B 1-1;\n"), without) << "B's own is not known";
+    EXPECT_EQ(refusal(1, "SG_MUL_VAL_ 1 A B 1-1;\nSG_MUL_VAL_ 1 B S 2-2;\n"), "");
+    for (const auto& [lines, why] : {
+             std::pair{"SG_MUL_VAL_ 1 A S 2-2;\n", "an SG_MUL_VAL_ without the number of its m"},
+             std::pair{"SG_MUL_VAL_ 1 A S 3-1;\n", "an SG_MUL_VAL_ whose range decreases"},
+             std::pair{"SG_MUL_VAL_ 1 A D 1-1;\n", "an SG_MUL_VAL_ whose multiplexor is none"},
+             std::pair{"SG_MUL_VAL_ 1 A X 1-1;\n", "an SG_MUL_VAL_ whose multiplexor is none"},
+             std::pair{"SG_MUL_VAL_ 1 A S 1-1;\nSG_MUL_VAL_ 1 A S 1-2;\n",
+                       "two SG_MUL_VAL_ that differ"},
+             std::pair{"SG_MUL_VAL_ 1 A S 1-1;\nSG_MUL_VAL_ 1 A B 1-1;\n",
+                       "two SG_MUL_VAL_ that differ"},
+         }) {
+        EXPECT_EQ(refusal(1, lines), why) << lines;
+    }
+    EXPECT_EQ(refusal(1, "SG_MUL_VAL_ 1 A S 1-1;\nSG_MUL_VAL_ 1 A S 1-1;\n"), "");
+    EXPECT_EQ(refusal(4, "SG_MUL_VAL_ 1 D S 0-0;\n"), "SG_MUL_VAL_, but no m in its SG_");
+    EXPECT_EQ(refusal(0, "SG_MUL_VAL_ 1 S B 0-0;\n"), without) << "of B, which is not known";
+}
+
+TEST(DbcFile, SeveralValuesAndLevelsBecomeOneSelector) {
+    CanSignal wire;
+    ASSERT_EQ(refusal(1, "SG_MUL_VAL_ 1 A S 9-9, 1-2, 3-5,1-1;\n", wire), "");
+    ASSERT_EQ(wire.selector.level_count, 1);
+    EXPECT_EQ(wire.selector.levels[0], (SignalSelector::Level{0, 8, ByteOrder::little, 2}));
+    EXPECT_EQ(wire.selector.ranges[0], (SignalSelector::Range{1, 5})) << "they touch";
+    EXPECT_EQ(wire.selector.ranges[1], (SignalSelector::Range{9, 9}));
+    const std::string lines =
+        "SG_MUL_VAL_ 1 C E 1-1, 3-3;\nSG_MUL_VAL_ 1 E B 7-300;\nSG_MUL_VAL_ 1 B S 2-2;\n";
+    ASSERT_EQ(refusal(3, lines, wire), "");
+    ASSERT_EQ(wire.selector.level_count, 3);
+    EXPECT_EQ(wire.selector.levels[0].start_bit, 0) << "S, the outermost";
+    EXPECT_EQ(wire.selector.levels[2].start_bit, 40) << "E";
+    EXPECT_EQ(wire.selector.ranges[0], (SignalSelector::Range{2, 2}));
+    EXPECT_EQ(wire.selector.ranges[1], (SignalSelector::Range{7, 255})) << "of 8 bits";
+    EXPECT_EQ(wire.selector.ranges[3], (SignalSelector::Range{3, 3}));
+}
+
+// cantools wrote M for each multiplexor once.
+TEST(DbcFile, AnMWithALineIsAPage) {
+    const Dbc dbc =
+        read(with(kPages, "B m2M", "B M") + "SG_MUL_VAL_ 1 A B 1-1;\nSG_MUL_VAL_ 1 B S 4-5;\n");
+    CanSignal wire;
+    ASSERT_EQ(to_can_signal(dbc.messages[0], dbc.messages[0].signals[1], wire), "");
+    EXPECT_EQ(wire.selector.level_count, 2);
+    EXPECT_EQ(wire.selector.ranges[0], (SignalSelector::Range{4, 5}));
+    ASSERT_EQ(to_can_signal(dbc.messages[0], dbc.messages[0].signals[2], wire), "");
+    EXPECT_EQ(wire.selector.level_count, 1);
+}
+
+TEST(DbcFile, WhatASelectorCannotHoldIsRefused) {
+    std::string eight = "SG_MUL_VAL_ 1 A S 1-1, 3-3, 5-5, 7-7, 9-9, 11-11, 13-13, 15-15";
+    EXPECT_EQ(refusal(1, eight + ";\n"), "");
+    EXPECT_EQ(refusal(1, eight + ", 17-17;\n"), "more than 8 ranges of multiplexor values");
+    EXPECT_EQ(refusal(1, "SG_MUL_VAL_ 1 A S 1-1, 255-256;\n"), "");
+    EXPECT_EQ(refusal(1, "SG_MUL_VAL_ 1 A S 1-1, 256-256;\n"),
+              "a multiplexor value that its multiplexor cannot represent");
+    const std::string circle = "more than 3 multiplexors, one in the other";
+    EXPECT_EQ(refusal(2, "SG_MUL_VAL_ 1 B B 2-2;\n"), circle);
+    EXPECT_EQ(refusal(1,
+                      "SG_MUL_VAL_ 1 A B 1-1;\nSG_MUL_VAL_ 1 B E 2-2;\n"
+                      "SG_MUL_VAL_ 1 E B 7-7;\n"),
+              circle);
+    const auto changed = [](const std::string& bits, const std::string& lines) {
+        const Dbc dbc = read(with(kPages, "16|8@1+", bits) + "SG_MUL_VAL_ 1 B S 2-2;\n" + lines);
+        CanSignal out;
+        const std::string why = to_can_signal(dbc.messages[0], dbc.messages[0].signals[1], out);
+        return why.empty() ? std::to_string(out.selector.ranges[1].most) : why;
     };
-    const std::string without = "a page without SG_MUL_VAL_, beside a multiplexed one";
-    EXPECT_EQ(reason(1, ""), without) << "of S or of B";
-    EXPECT_EQ(reason(4, ""), "") << "in every frame";
-    EXPECT_EQ(reason(1, "SG_MUL_VAL_ 1 A S 1-1;\nSG_MUL_VAL_ 1 B S 2-2;\n"), "");
-    EXPECT_EQ(reason(3, "SG_MUL_VAL_ 1 A S 1-1;\n"), without);
-    EXPECT_EQ(reason(3, "SG_MUL_VAL_ 1 C B 1-1;\n"), "extended multiplexing");
-    EXPECT_EQ(reason(2, "SG_MUL_VAL_ 1 B S 2-2;\n"), "extended multiplexing");
-    for (const char* more :
-         {"SG_MUL_VAL_ 1 A S 1-2;\n", "SG_MUL_VAL_ 1 A S 1-1, 3-3;\n", "SG_MUL_VAL_ 1 A S 2-2;\n",
-          "SG_MUL_VAL_ 1 A S 1-1;\nSG_MUL_VAL_ 1 A S 0-0;\n"}) {
-        EXPECT_EQ(reason(1, more), "several multiplexor values") << more;
-    }
-    for (const char* more :
-         {"SG_MUL_VAL_ 1 A B 1-1;\nSG_MUL_VAL_ 1 A S 1-1;\n",
-          "SG_MUL_VAL_ 1 A S 1-1;\nSG_MUL_VAL_ 1 A B 1-1;\n", "SG_MUL_VAL_ 1 A Nobody 1-1;\n"}) {
-        EXPECT_EQ(reason(1, more), "extended multiplexing") << more;
-    }
-    EXPECT_EQ(reason(4, "SG_MUL_VAL_ 1 D S 0-0;\n"), "extended multiplexing");
+    const std::string of_b = "SG_MUL_VAL_ 1 A B 1-200;\n";
+    EXPECT_EQ(changed("8|8@1+", of_b), "200");
+    EXPECT_EQ(changed("7|8@1+", of_b), "multiplexors that share bits");
+    EXPECT_EQ(changed("60|8@1+", of_b), "bits outside the message's 8 bytes");
+    EXPECT_EQ(changed("16|8@1-", of_b), "127") << "the others are negative";
+    EXPECT_EQ(changed("16|8@1-", "SG_MUL_VAL_ 1 A B 1-1, 127-128;\n"), "1");
+    EXPECT_EQ(changed("16|8@1-", "SG_MUL_VAL_ 1 A B 1-1, 128-128;\n"),
+              "a multiplexor value that its multiplexor cannot represent");
+    EXPECT_EQ(changed("16|32@1-", of_b), "200");
+    const std::string why = "a message whose multiplexor is a float, or longer than 32 bits";
+    EXPECT_EQ(changed("16|33@1-", of_b), why);
+    EXPECT_EQ(changed("16|32@1-", of_b + "SIG_VALTYPE_ 1 B : 1;\n"), why);
 }
 
 TEST(DbcFile, TheFirstThingThatCannotBeReadIsSaidWithItsLine) {

@@ -49,8 +49,8 @@ TEST(MachineDbc, EveryRefusalNamesBothPlaces) {
                   "m:32: can.axes.X: invalid value (found \"Y\" (board.dbc:12), expected a signal "
                   "of Linear: X, Count, State, Tool, Homed).\n"},
              Case{"X: Linear.X", "X: Pages.Deep",
-                  "m:32: can.axes.X: invalid value (found a signal of extended multiplexing "
-                  "(board.dbc:27), expected another signal). See docs/reference/protocol.md.\n"},
+                  "m:32: can.axes.X: invalid value (found bits that reach from 0 to 255 "
+                  "(board.dbc:27), expected the axis' whole travel, -300 to 300).\n"},
              Case{"X: Linear.X", "X: Tilt.C",
                   "m:32: can.axes.X: invalid value (found the unit \"\" (board.dbc:21), expected "
                   "the unit stated here, such as {signal: Tilt.C, unit: mm}).\nm:34: can.axes.C: "
@@ -166,14 +166,34 @@ TEST(MachineDbc, PagesOfOneMessageCarryAnAxisEach) {
     text = with(text, "A: Tilt.A", "A: Pages.P1");
     ASSERT_EQ(faults_with_file(text, kBoardDbc, machine), "");
     EXPECT_EQ(make_frame_set(machine).axis_count, machine.axes.size());
-    EXPECT_EQ(machine.can.signals[0].selector.length_bits, 8);
-    EXPECT_EQ(machine.can.signals[0].selector.value, 0U);
-    EXPECT_EQ(machine.can.signals[1].selector.value, 1U);
+    EXPECT_EQ(machine.can.signals[0].selector.levels[0].length_bits, 8);
+    EXPECT_EQ(machine.can.signals[0].selector.ranges[0].least, 0U);
+    EXPECT_EQ(machine.can.signals[1].selector.ranges[0].least, 1U);
     EXPECT_EQ(
         faults_with_file(with(text, "A: Pages.P1", "A: {signal: Pages.Page, unit: deg}"), kBoardDbc)
             .find("m:33: can.axes.A: invalid value (found"),
         0U)
         << "multiplexed and not, in one message";
+}
+
+// A frame of pages 0 to 2 and of page 1 would be of two sets of signals, and only one is read.
+TEST(MachineDbc, PagesThatOverlapInPartAreRefused) {
+    Machine machine;
+    std::string text = with(dbc_machine(), "X: Linear.X", "X: Pages.P0");
+    text = with(text, "A: Tilt.A", "A: Pages.P1");
+    const auto faults = [&](const std::string& of_p0, const std::string& of_p1) {
+        const std::string file = with(kBoardDbc, "P0 Page 0-0", "P0 Page " + of_p0);
+        return faults_with_file(text, with(file, "P1 Page 1 - 1", "P1 Page " + of_p1), machine);
+    };
+    EXPECT_EQ(faults("0-0, 2-2", "1-1, 3-9"), "");
+    EXPECT_EQ(make_frame_set(machine).frame_count, 4U);
+    EXPECT_EQ(faults("0-0, 2-3", "1-1, 3-9"),
+              "m:33: can.axes.A: invalid value (found pages of which some are those of can.axes.X "
+              "(board.dbc:26), expected the same pages, or no page of it).\n");
+    EXPECT_EQ(faults("0-1", "0-1")
+                  .find("m:33: can.axes.A: invalid value (found bits that "
+                        "can.axes.X uses in the same frame"),
+              0U);
 }
 
 TEST(MachineDbc, WithoutTheFormatItsKeysAreFaults) {

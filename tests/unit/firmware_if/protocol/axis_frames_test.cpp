@@ -313,12 +313,19 @@ TEST(Signals, WithoutAPlaceForEachTheSetIsEmpty) {
     EXPECT_FALSE(fits({signal(0, 0, 54, ByteOrder::little)}));
     EXPECT_FALSE(fits({signal(1, 0, 8, ByteOrder::little)}));
     CanSignal paged = signal(0, 0, 8, ByteOrder::little);
-    paged.selector = {.start_bit = 32, .length_bits = 32};
-    EXPECT_TRUE(fits({paged}));
-    paged.selector.start_bit = 33;
-    EXPECT_FALSE(fits({paged}));
-    paged.selector = {.start_bit = 0, .length_bits = 33};
-    EXPECT_FALSE(fits({paged}));
+    const auto fits_level = [&](SignalSelector::Level level, std::uint8_t count) {
+        paged.selector = {.level_count = count};
+        paged.selector.levels.fill(level);
+        return fits({paged});
+    };
+    EXPECT_TRUE(fits_level({32, 32, ByteOrder::little, 8}, 1));
+    EXPECT_FALSE(fits_level({33, 32, ByteOrder::little, 8}, 1));
+    EXPECT_FALSE(fits_level({0, 33, ByteOrder::little, 8}, 1));
+    EXPECT_FALSE(fits_level({0, 8, ByteOrder::little, 0}, 1)) << "no value";
+    EXPECT_FALSE(fits_level({0, 8, ByteOrder::little, 9}, 1)) << "more than there is room for";
+    EXPECT_TRUE(fits_level({0, 8, ByteOrder::little, 2}, 3));
+    EXPECT_FALSE(fits_level({0, 8, ByteOrder::little, 3}, 3)) << "all together";
+    EXPECT_FALSE(fits_level({0, 8, ByteOrder::little, 1}, 4));
     EXPECT_FALSE(fits({signal(0, 0, 8, ByteOrder::little), signal(0, 8, 8, ByteOrder::little)}))
         << "two positions of one axis";
     machine.axes.resize(2, machine.axes[0]);

@@ -114,6 +114,67 @@ TEST(SignalReceiver, IdentifiersOf29BitsAreOthersThanOf11) {
     EXPECT_EQ(slot_of(encoder.frame_set(), swapped[1]), 2U) << "bit 31 is no part of a number";
 }
 
+/// X and A in pages 0 and 4 to 6, and in page 3 of page 1.
+Machine multiplexed_machine() {
+    const std::string file = with(kBoardDbc, " SG_ P1 m1 : 8|32@1-", " SG_ P1 m3 : 16|32@1-");
+    const std::string pages =
+        with(with(file, "Deep m2M : 8|8", "Deep m1M : 8|8"), "P0 Page 0-0", "P0 Page 4-6, 0-0");
+    std::string text = with(dbc_machine(), "X: Linear.X", "X: Pages.P0");
+    text = with(text, "A: Tilt.A", "A: Pages.P1");
+    Machine machine;
+    EXPECT_EQ(faults_with_file(text,
+                               with(with(pages, "Deep Page 2-2", "Deep Page 1-1"), "P1 Page 1 - 1",
+                                    "P1 Deep 3-3"),
+                               machine),
+              "");
+    return machine;
+}
+
+// A frame is of a page if each multiplexor has one of the page's values. The position of another
+// page is not taken, and one that comes no more ends the set.
+TEST(SignalReceiver, APositionIsReadUnderAnyOfItsValuesAndUnderNoOther) {
+    const Machine machine = multiplexed_machine();
+    AxisEncoder encoder(machine);
+    const std::uint32_t x = slot_of(encoder.frame_set(), frames_of(encoder, snapshot_of(0))[0]);
+    CanFrame frame = frames_of(encoder, snapshot_of(1))[0];
+    ASSERT_EQ(frame.id, 400U);
+    for (std::uint32_t page = 0; page < 256; ++page) {
+        for (const std::uint32_t deep : {0U, 2U, 3U, 4U, 255U}) {
+            frame.data[0] = static_cast<std::uint8_t>(page);
+            frame.data[1] = static_cast<std::uint8_t>(deep);
+            const bool is_x = page == 0 || (page >= 4 && page <= 6);
+            const bool is_a = page == 1 && deep == 3;
+            const std::uint32_t slot = slot_of(encoder.frame_set(), frame);
+            EXPECT_EQ(slot == x, is_x) << page;
+            EXPECT_EQ(slot < encoder.frame_set().frame_count, is_x || is_a) << page << ' ' << deep;
+        }
+    }
+}
+
+TEST(SignalReceiver, APageThatComesNoMoreEndsTheSamples) {
+    const Machine machine = multiplexed_machine();
+    AxisEncoder encoder(machine);
+    AxisReceiver receiver(machine);
+    Heard heard;
+    for (std::uint64_t k = 0; k < 60; ++k) {
+        std::vector<CanFrame> frames = frames_of(encoder, snapshot_of(k));
+        for (CanFrame& frame : frames) {
+            if (frame.id == 400 && frame.data[0] == 0) {
+                // The board takes turns; from sample 40 on it sends a page that is not X's.
+                frame.data[0] = static_cast<std::uint8_t>(k < 40 ? std::array{0, 4, 6}[k % 3] : 7);
+            }
+        }
+        listen(receiver, frames, heard);
+    }
+    ASSERT_EQ(heard.snapshots.size(), 40U);
+    for (std::uint64_t k = 0; k < 40; ++k) {
+        EXPECT_NEAR(heard.snapshots[k].position[0], snapshot_of(k).position[0], 0.51e-3) << k;
+        EXPECT_NEAR(heard.snapshots[k].position[1], snapshot_of(k).position[1], 1e-5) << k;
+    }
+    EXPECT_FALSE(heard.faults.empty());
+    EXPECT_EQ(receiver.state(), ReceiverState::invalid);
+}
+
 TEST(SignalReceiver, StatesShareTheirBitsAndMeanOneValueEach) {
     for (const auto& [state, mode] :
          {std::pair{0, kModeStandstill}, std::pair{1, kModeMoving}, std::pair{2, kModeToolChange},
