@@ -257,6 +257,18 @@ bool is_without_time(std::string_view line) {
     return !parse_candump_line(stamped, frame, device);
 }
 
+/// What was expected of a file that is no trace, and how to get there.
+const char* wanted_of(std::string_view line) {
+    if (line.starts_with("MDF     ")) {  // the first bytes of MF4; Debian 12's python3-can is older
+        return "a candump log or a Vector ASC file; convert MF4 with can_logconvert of PyPI's "
+               "python-can and asammdf";
+    }
+    return is_without_time(line)
+               ? "a time before each frame; record with candump -L or -ta"
+               : "a candump log or a Vector ASC file; convert other formats with can_logconvert "
+                 "(Debian: python3-can)";
+}
+
 }  // namespace
 
 std::unique_ptr<TraceReader> open_trace(const std::string& path, const TraceOptions& options,
@@ -284,11 +296,7 @@ std::unique_ptr<TraceReader> open_trace(const std::string& path, const TraceOpti
         }
         if (kind == '?') {
             error = path + ":" + std::to_string(lines.line_number()) + ": " +
-                    fault_text("invalid file", quoted_bytes(line),
-                               is_without_time(line)
-                                   ? "a time before each frame; record with candump -L or -ta"
-                                   : "a candump log or a Vector ASC file; convert other formats "
-                                     "with can_logconvert (Debian: python3-can)");
+                    fault_text("invalid file", quoted_bytes(line), wanted_of(line));
         } else if (kind == 0) {
             error = path + ": " + (lines.error().empty() ? "the trace is empty" : lines.error());
         }

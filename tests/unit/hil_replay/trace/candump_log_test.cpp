@@ -407,6 +407,9 @@ TEST_F(CandumpFile, WhatIsNoTraceIsRefusedByName) {
                            "before each frame). Record with candump -L or -ta."),
               std::string::npos)
         << untimed;
+    EXPECT_NE(
+        say("d", "MDF     4.10    amdf\n").find(". Convert MF4 with can_logconvert of PyPI's "),
+        std::string::npos);
     std::string error;
     EXPECT_EQ(open_trace(folder_, {}, error), nullptr);
     EXPECT_NE(error.find("found a folder, expected a trace file"), std::string::npos) << error;
