@@ -3,10 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
+#include <vector>
 
 #include "config/text/quote_text.hpp"
 #include "firmware_if/cli/command_line.hpp"
@@ -16,26 +20,28 @@
 #include "firmware_if/system/status_socket.hpp"
 #include "hil_replay/watch/watch_page.hpp"
 #include "hil_replay/watch/watch_run.hpp"
+#include "hil_replay/watch/watched_trace.hpp"
 
 namespace axg {
 namespace {
 
 struct WatchOptions {
     MachineOptions machine;
-    std::string bus, socket, trace;
+    std::string bus, socket;
+    std::vector<std::string> traces;
     std::string listen = "127.0.0.1:8642";
 };
 
 /// The fault of the options; empty: none.
 std::string fault_of(const WatchOptions& options, const std::optional<ListenAddress>& address) {
-    if (options.bus.empty() && options.socket.empty() && options.trace.empty()) {
+    if (options.bus.empty() && options.socket.empty() && options.traces.empty()) {
         return "missing option. Pass --bus IF, --socket PATH or --trace FILE.";
     }
-    if (!options.bus.empty() && !options.trace.empty()) {
+    if (!options.bus.empty() && !options.traces.empty()) {
         return "--trace replaces --bus. Leave one of them out.";
     }
     if (!address) {
-        return "--listen: invalid address (found " + quoted(options.listen) +
+        return "--listen: invalid address (found " + axg::quoted(options.listen) +
                ", expected ADDRESS:PORT, numeric).";
     }
     return {};
@@ -46,13 +52,43 @@ std::string status_path_of(const WatchOptions& options) {
     return options.bus.empty() ? options.socket : status_path(options.bus, options.socket);
 }
 
+/// Looks for what is missing in the traces, and opens them. False: as open_bus().
+bool open_traces(const WatchOptions& options, const LoadedMachine& loaded, WatchSources& sources,
+                 std::string& fault) {
+    std::vector<TraceContent> contents;
+    for (const std::string& path : options.traces) {
+        std::error_code error;
+        if (path == "-" || std::filesystem::is_fifo(path, error)) {
+            fmt::print(stderr, "axguard: {}: read to its end first. For a live bus use --bus.\n",
+                       escaped(path, 200));
+        }
+        std::optional<TraceContent> content = read_content(loaded.machine, path, fault);
+        if (!content) {
+            return false;
+        }
+        contents.push_back(std::move(*content));
+    }
+    fault = fault_of_traces(contents);
+    if (!fault.empty()) {
+        return false;
+    }
+    sources.traces.emplace();
+    sources.traces->has_guard =
+        std::any_of(contents.begin(), contents.end(),
+                    [](const TraceContent& content) { return content.of_guard != 0; });
+    sources.traces->notes = notes_about(contents, loaded.machine, options.machine.file);
+    sources.bus = WatchedBus::open_traces(options.traces, fault);
+    return sources.bus != nullptr;
+}
+
 /// False: `fault` has the failure and the next step.
-bool open_bus(const WatchOptions& options, const Machine& machine, WatchSources& sources,
+bool open_bus(const WatchOptions& options, const LoadedMachine& loaded, WatchSources& sources,
               std::string& fault) {
+    if (!options.traces.empty()) {
+        return open_traces(options, loaded, sources, fault);
+    }
     if (!options.bus.empty()) {
-        sources.bus = WatchedBus::open_interface(machine, options.bus, fault);
-    } else if (!options.trace.empty()) {
-        sources.bus = WatchedBus::open_trace_file(options.trace, fault);
+        sources.bus = WatchedBus::open_interface(loaded.machine, options.bus, fault);
     }
     return fault.empty();
 }
@@ -72,10 +108,15 @@ int watch(const WatchOptions& options) {
     if (!parts) {
         return kExitInternal;
     }
-    WatchSources sources{.bus = {}, .status_path = status_path_of(options)};
-    if (!open_bus(options, loaded.machine, sources, fault)) {
+    WatchSources sources{.bus = {}, .traces = {}, .status_path = status_path_of(options)};
+    if (!open_bus(options, loaded, sources, fault)) {
         fmt::print(stderr, "axguard: {}\n", fault);
         return options.bus.empty() ? kExitInput : kExitCan;
+    }
+    if (sources.traces) {
+        for (const std::string& note : sources.traces->notes) {
+            fmt::print(stderr, "axguard: note: {}\n", note);
+        }
     }
     EndSignals signals;  // before the threads, which then leave them to this one
     const std::unique_ptr<HttpServer> server =
@@ -111,8 +152,11 @@ void add_watch(CommandLine& line) {
                        "the service on it");
     command.add_option("--socket", options->socket,
                        "status socket of the guard, if started with --status-socket");
-    command.add_input("--trace", options->trace,
-                      "play this recorded trace at its own speed instead of a bus");
+    command
+        .add_option("--trace", options->traces,
+                    "play this recorded trace at its own speed instead of a bus; again for the "
+                    "guard's trace of the same time")
+        .repeatable();
     command
         .add_option("--listen", options->listen,
                     "address and port of the page; any but a loopback address serves other "

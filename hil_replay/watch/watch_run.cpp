@@ -28,7 +28,10 @@ void run_watch(const LoadedMachine& loaded, WatchSources sources, HttpServer& se
         } else {
             poll(nullptr, 0, static_cast<int>(kPageEveryUs / 1000));
         }
-        const std::int64_t now_us = monotonic_us();
+        // After the end of a trace the page keeps its last state.
+        const std::optional<std::int64_t> end_us =
+            sources.bus && !reads_status ? sources.bus->end_us() : std::nullopt;
+        const std::int64_t now_us = end_us.value_or(monotonic_us());
         view.on_time(now_us);
         StatusReader::Reading status = reader.last();
         WatchInput input{.machine = loaded.machine,
@@ -43,6 +46,10 @@ void run_watch(const LoadedMachine& loaded, WatchSources sources, HttpServer& se
             input.bus = &view.state();
             input.bus_name = sources.bus->name();
             input.bus_fault = sources.bus->fault();
+        }
+        if (sources.traces) {
+            sources.traces->is_over = end_us.has_value();
+            input.traces = &*sources.traces;
         }
         server.publish(watch_json(input));
     }

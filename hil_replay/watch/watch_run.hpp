@@ -3,10 +3,13 @@
 #pragma once
 
 #include <functional>
+#include <memory>
+#include <optional>
 #include <string>
 
 #include "firmware_if/setup/loaded_machine.hpp"
 #include "hil_replay/watch/http_server.hpp"
+#include "hil_replay/watch/watch_state.hpp"
 #include "hil_replay/watch/watched_bus.hpp"
 
 namespace axg {
@@ -14,8 +17,9 @@ namespace axg {
 inline constexpr std::int64_t kPageEveryUs = 50'000;
 
 struct WatchSources {
-    std::unique_ptr<WatchedBus> bus;  // null: none
-    std::string status_path;          // empty: none
+    std::unique_ptr<WatchedBus> bus;        // null: none
+    std::optional<WatchedTraces> traces{};  // nullopt: the bus is not recorded
+    std::string status_path;                // empty: none
 };
 
 /// Runs until `is_ended` returns true; calls it once for each state of the page.

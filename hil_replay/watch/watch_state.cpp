@@ -98,6 +98,26 @@ WatchHeadline headline_of_bus(const WatchInput& input) {
                : headline_of_phase("init");
 }
 
+WatchHeadline headline_now(const WatchInput& input) {
+    if (has_status(input)) {
+        return headline_of_line(input);
+    }
+    if (is_heard(input)) {
+        return headline_of_bus(input);
+    }
+    if (input.traces != nullptr) {
+        return {"unreachable",
+                input.traces->has_guard ? "No frame of the guard" : "No guard in this trace",
+                {}};
+    }
+    const std::int64_t heard_us =
+        std::max(input.bus != nullptr ? input.bus->guard_us : kNeverSeen, input.status_us);
+    return {
+        "unreachable",
+        heard_us == kNeverSeen ? "Guard not reachable" : "Guard not reachable any more",
+        heard_us == kNeverSeen ? std::nullopt : std::optional((input.now_us - heard_us) / 1000)};
+}
+
 }  // namespace
 
 std::string words_of_pair(const Machine& machine, std::uint32_t pair) {
@@ -106,18 +126,11 @@ std::string words_of_pair(const Machine& machine, std::uint32_t pair) {
 }
 
 WatchHeadline headline_of(const WatchInput& input) {
-    if (has_status(input)) {
-        return headline_of_line(input);
+    WatchHeadline out = headline_now(input);
+    if (input.traces != nullptr && input.traces->is_over && input.traces->has_guard) {
+        out.text = "End of the trace: " + out.text;
     }
-    if (is_heard(input)) {
-        return headline_of_bus(input);
-    }
-    const std::int64_t heard_us =
-        std::max(input.bus != nullptr ? input.bus->guard_us : kNeverSeen, input.status_us);
-    return {
-        "unreachable",
-        heard_us == kNeverSeen ? "Guard not reachable" : "Guard not reachable any more",
-        heard_us == kNeverSeen ? std::nullopt : std::optional((input.now_us - heard_us) / 1000)};
+    return out;
 }
 
 std::vector<WatchWhy> whys_of(const WatchInput& input) {
@@ -175,6 +188,11 @@ std::vector<std::string> notes_of(const WatchInput& input) {
         }
         out.push_back(
             "The guard sends other hashes on the bus than this machine file has: " + parts + ".");
+    }
+    if (input.traces != nullptr) {
+        for (const std::string& note : input.traces->notes) {
+            out.push_back(escaped(note, 1000));
+        }
     }
     if (!input.bus_fault.empty()) {
         out.push_back(escaped(input.bus_fault, 300));

@@ -37,12 +37,20 @@ struct GuardLine {
 /// nullopt: no line of this version.
 [[nodiscard]] std::optional<GuardLine> read_guard_line(std::string_view line);
 
+/// What a page says of a recorded bus.
+struct WatchedTraces {
+    bool has_guard = true;           // some frame is the guard's
+    bool is_over = false;            // they were played to their end
+    std::vector<std::string> notes;  // what is missing in them
+};
+
 struct WatchInput {
     const Machine& machine;
     std::string_view configuration;  // hash of the machine file that the page shows
     const BusState* bus = nullptr;   // null: the bus is not read
     std::string_view bus_name = {};
-    std::string_view bus_fault = {};  // why it cannot be read now; empty: it can
+    std::string_view bus_fault = {};        // why it cannot be read now; empty: it can
+    const WatchedTraces* traces = nullptr;  // null: the bus is no recorded one
     bool reads_status = false;
     std::optional<GuardLine> status{};    // of the last line that was read
     std::int64_t status_us = kNeverSeen;  // when

@@ -36,17 +36,24 @@ std::unique_ptr<WatchedBus> WatchedBus::open_interface(const Machine& machine,
     return out->open_listener(fault) ? std::move(out) : nullptr;
 }
 
-std::unique_ptr<WatchedBus> WatchedBus::open_trace_file(const std::string& path,
-                                                        std::string& fault) {
+std::unique_ptr<WatchedBus> WatchedBus::open_traces(const std::vector<std::string>& paths,
+                                                    std::string& fault) {
     std::unique_ptr<WatchedBus> out(new WatchedBus());
-    out->name_ = path;
-    out->trace_ = open_trace(path, {.lenient = true}, fault);
-    return out->trace_ ? std::move(out) : nullptr;
+    for (const std::string& path : paths) {
+        out->name_ += (out->name_.empty() ? "" : ", ") + path;
+        Trace trace{open_trace(path, {.lenient = true}, fault), {}};
+        if (!trace.reader) {
+            return nullptr;
+        }
+        out->advance(trace);
+        out->traces_.push_back(std::move(trace));
+    }
+    return out;
 }
 
 void WatchedBus::read_until(std::int64_t until_us, const OnFrame& on_frame) {
-    if (trace_) {
-        read_trace(until_us, on_frame);
+    if (!traces_.empty()) {
+        read_traces(until_us, on_frame);
         return;
     }
     for (std::uint32_t frames = 0; frames < kFramesATurnMax; ++frames) {
@@ -92,30 +99,39 @@ bool WatchedBus::read_listener(const OnFrame& on_frame) {
     return false;
 }
 
-void WatchedBus::read_trace(std::int64_t until_us, const OnFrame& on_frame) {
+void WatchedBus::advance(Trace& trace) {
+    CanFrame frame;
+    trace.next = trace.reader->next(frame) ? std::optional(frame) : std::nullopt;
+    if (!trace.next && !trace.reader->error().empty()) {
+        fault_ = trace.reader->error();
+    }
+}
+
+void WatchedBus::read_traces(std::int64_t until_us, const OnFrame& on_frame) {
     sleep_until(until_us);
     const std::int64_t now_us = monotonic_us();
     for (std::uint32_t frames = 0; frames < kFramesATurnMax; ++frames) {
-        if (!next_) {
-            CanFrame frame;
-            if (!trace_->next(frame)) {
-                fault_ = name_ + (trace_->error().empty() ? ": the trace has ended"
-                                                          : ": " + trace_->error());
-                return;
-            }
-            next_ = frame;
-        }
-        if (!has_begun_) {
-            has_begun_ = true;
-            shift_us_ = now_us - next_->time_us;
-        }
-        next_->time_us += shift_us_;
-        if (next_->time_us > now_us) {
-            next_->time_us -= shift_us_;
+        const auto first =
+            std::min_element(traces_.begin(), traces_.end(), [](const Trace& a, const Trace& b) {
+                return a.next && (!b.next || a.next->time_us < b.next->time_us);
+            });
+        if (!first->next) {
+            end_us_ = last_us_;
+            fault_ = fault_.empty() ? name_ + ": the trace has ended" : fault_;
             return;
         }
-        on_frame(*next_);
-        next_.reset();
+        CanFrame frame = *first->next;
+        if (!has_begun_) {
+            has_begun_ = true;
+            shift_us_ = now_us - frame.time_us;
+        }
+        frame.time_us += shift_us_;
+        if (frame.time_us > now_us) {
+            return;
+        }
+        last_us_ = frame.time_us;
+        on_frame(frame);
+        advance(*first);
     }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The bus that a page watches: a CAN interface that is only listened to and opened again when it
-// comes back, or a recorded trace at its own speed.
+// comes back, or recorded traces of one time, merged, at their own speed.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/machine/machine.hpp"
 #include "firmware_if/can/can_listener.hpp"
@@ -27,29 +28,38 @@ class WatchedBus {
     [[nodiscard]] static std::unique_ptr<WatchedBus> open_interface(const Machine& machine,
                                                                     const std::string& interface,
                                                                     std::string& fault);
-    [[nodiscard]] static std::unique_ptr<WatchedBus> open_trace_file(const std::string& path,
-                                                                     std::string& fault);
+    [[nodiscard]] static std::unique_ptr<WatchedBus> open_traces(
+        const std::vector<std::string>& paths, std::string& fault);
 
     /// Passes on the frames that have come, or come until then. At most kFramesATurnMax frames.
     void read_until(std::int64_t until_us, const OnFrame& on_frame);
     /// Why no frames come; empty: no fault.
     [[nodiscard]] const std::string& fault() const noexcept { return fault_; }
     [[nodiscard]] const std::string& name() const noexcept { return name_; }
+    /// When the last frame of all traces was played; nullopt: it was not, or the bus is live.
+    [[nodiscard]] std::optional<std::int64_t> end_us() const noexcept { return end_us_; }
 
   private:
     WatchedBus() = default;
     [[nodiscard]] bool open_listener(std::string& fault);
     /// False: no more in this turn.
     [[nodiscard]] bool read_listener(const OnFrame& on_frame);
-    void read_trace(std::int64_t until_us, const OnFrame& on_frame);
+    void read_traces(std::int64_t until_us, const OnFrame& on_frame);
 
     std::string name_, fault_;
     SocketOptions options_;
     std::optional<CanListener> listener_;
     std::int64_t reopen_us_ = 0;
-    std::unique_ptr<TraceReader> trace_;
-    std::optional<CanFrame> next_;  // of the trace
-    std::int64_t shift_us_ = 0;     // from the trace's clock to ours
+    struct Trace {
+        std::unique_ptr<TraceReader> reader;
+        std::optional<CanFrame> next;  // none: it has ended
+    };
+    void advance(Trace& trace);
+
+    std::vector<Trace> traces_;
+    std::int64_t shift_us_ = 0;  // from the traces' clock to ours
+    std::int64_t last_us_ = 0;   // of our clock
+    std::optional<std::int64_t> end_us_;
     bool has_begun_ = false;
 };
 
