@@ -14,6 +14,8 @@ namespace axg {
 namespace {
 
 constexpr double kSameMm = 0.001;  // a table states three or four decimals
+constexpr double kInchMm = 25.4;
+constexpr double kLikeInch = 0.02;  // of a length: tools are measured again, and ground
 constexpr std::string_view kBlank = " \t\r";
 constexpr std::string_view kOffsets = "XYABCUVW";
 
@@ -82,18 +84,32 @@ std::optional<double> cutting_radius(const Tool& tool) {
     return radius;
 }
 
-void compare(const TableTool& row, const Tool& tool, std::vector<std::string>& out) {
+/// "118.5 mm", "4.5 inch (114.3 mm)".
+std::string table_length(double length_mm, double unit_mm) {
+    return unit_mm == kInchMm
+               ? fmt::format("{:.6g} inch ({:.6g} mm)", length_mm / unit_mm, length_mm)
+               : fmt::format("{:.6g} mm", length_mm);
+}
+
+void compare(const TableTool& row, const Tool& tool, double unit_mm,
+             std::vector<std::string>& out) {
     const std::string where = fmt::format("{}: tool {}: ", row.source, row.number);
     const std::string& other = tool.mesh.where;
     if (std::fabs(row.length_mm - tool.length_mm) > kSameMm) {
-        out.push_back(fmt::format("{}length {:.6g} mm, and {:.6g} mm in {}. Correct one of them.",
-                                  where, row.length_mm, tool.length_mm, other));
+        const bool is_like_inch =
+            unit_mm == 1 &&
+            std::fabs(row.length_mm * kInchMm - tool.length_mm) < kLikeInch * tool.length_mm;
+        out.push_back(fmt::format("{}length {}, and {:.6g} mm in {}. Correct one of them.{}", where,
+                                  table_length(row.length_mm, unit_mm), tool.length_mm, other,
+                                  is_like_inch ? " Is the table in inch? Then state program: "
+                                                 "{start_unit: inch}."
+                                               : ""));
     }
     const std::optional<double> radius = cutting_radius(tool);
     if (radius && row.diameter_mm &&
         std::fabs(std::fabs(*row.diameter_mm) - 2 * *radius) > kSameMm) {
-        out.push_back(fmt::format("{}diameter {:.6g} mm, and {:.6g} mm in {}. Correct one of them.",
-                                  where, *row.diameter_mm, 2 * *radius, other));
+        out.push_back(fmt::format("{}diameter {}, and {:.6g} mm in {}. Correct one of them.", where,
+                                  table_length(*row.diameter_mm, unit_mm), 2 * *radius, other));
     }
     if (row.has_other_offset) {
         out.push_back(where +
@@ -106,6 +122,7 @@ void compare(const TableTool& row, const Tool& tool, std::vector<std::string>& o
 
 ToolTable read_tool_table(std::string_view text, const std::string& name, double unit_mm) {
     ToolTable table;
+    table.unit_mm = unit_mm;
     for (int number = 1; !text.empty(); ++number) {
         const std::size_t end = std::min(text.find('\n'), text.size());
         std::string_view line = text.substr(0, end);
@@ -155,7 +172,7 @@ std::vector<std::string> tool_differences(const ToolTable& table, const std::str
                             "permit. Add it to tools.",
                             row.source, row.number));
         } else {
-            compare(row, *tool, out);
+            compare(row, *tool, table.unit_mm, out);
         }
     }
     for (const Tool& tool : machine.tools) {

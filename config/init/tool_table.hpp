@@ -32,6 +32,7 @@ struct TableTool {
 }
 
 struct ToolTable {
+    double unit_mm = 1;               // in which the file was read
     std::vector<TableTool> tools;     // each number once
     std::vector<std::string> faults;  // with file and line; these lines are left out
 };
@@ -43,6 +44,7 @@ struct ToolTable {
 
 /// One line for each difference: a tool in one of them only, another length, another diameter. A
 /// diameter is compared with the cutting sections of a tool; other surfaces do not state theirs.
+/// A length that was read in another unit than mm is stated in both.
 /// @param name  of the table
 [[nodiscard]] std::vector<std::string> tool_differences(const ToolTable& table,
                                                         const std::string& name,

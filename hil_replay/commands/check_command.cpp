@@ -82,10 +82,14 @@ int write_report(const CheckOptions& options, const LoadedMachine& loaded) {
     return write_run_page(options.report, run, stderr) ? kExitClean : kExitInternal;
 }
 
-/// Lines about what differs from LinuxCNC's tool table, in the unit in which its programs start;
-/// false after a message.
-bool compare_tools(const std::string& file, const LoadedMachine& loaded,
-                   std::vector<std::string>& out) {
+struct TableReport {
+    std::string words;                     // what was compared, and in which unit; empty: nothing
+    std::vector<std::string> differences;  // a line each
+};
+
+/// What differs from LinuxCNC's tool table, read in the unit in which its programs start; false
+/// after a message.
+bool compare_tools(const std::string& file, const LoadedMachine& loaded, TableReport& out) {
     std::string text;
     const std::string shown = escaped(file, 4096);
     if (const SmallFileFault fault = read_small_file(file, kToolTableBytesMax, text);
@@ -96,11 +100,15 @@ bool compare_tools(const std::string& file, const LoadedMachine& loaded,
     const std::optional<bool> is_inch =
         program_settings(loaded.source, loaded.machine).starts_in_inch;
     const ToolTable table = read_tool_table(text, shown, is_inch.value_or(false) ? 25.4 : 1);
-    out = tool_differences(table, shown, loaded.machine);
-    if (!out.empty() && !is_inch) {
-        out.push_back(shown +
-                      ": read in mm. If the control counts in inch, state program: {start_unit: "
-                      "inch}.");
+    out.differences = tool_differences(table, shown, loaded.machine);
+    out.words = fmt::format("{}: tools read: {}, lengths in {}{}", shown, table.tools.size(),
+                            is_inch.value_or(false) ? "inch" : "mm",
+                            is_inch ? ", as program.start_unit of the machine file"
+                                    : ": program.start_unit is not stated");
+    if (!out.differences.empty() && !is_inch) {
+        out.differences.push_back(shown +
+                                  ": read in mm. If the control counts in inch, state program: "
+                                  "{start_unit: inch}.");
     }
     return true;
 }
@@ -110,8 +118,8 @@ int check(const CheckOptions& options) {
     if (const int code = load(options.machine, loaded); code != kExitClean) {
         return code;
     }
-    std::vector<std::string> differences;
-    if (!options.tool_table.empty() && !compare_tools(options.tool_table, loaded, differences)) {
+    TableReport table;
+    if (!options.tool_table.empty() && !compare_tools(options.tool_table, loaded, table)) {
         return kExitInput;
     }
     if (options.is_effective) {
@@ -144,7 +152,11 @@ int check(const CheckOptions& options) {
     report_frames(report);
     report_bodies(report);
     report_tools(report);
-    report.warnings.insert(report.warnings.end(), differences.begin(), differences.end());
+    if (!table.words.empty()) {
+        fmt::print(report.words, "  {}\n", table.words);
+    }
+    report.warnings.insert(report.warnings.end(), table.differences.begin(),
+                           table.differences.end());
     report_pairs(report);
     report_pose_errors(report);
     report_guard(report);
@@ -205,7 +217,8 @@ void add_check(CommandLine& line) {
                       "compare the plan of the machine file with that of this verdict, which "
                       "axguardd admit or run stored on the guard's computer");
     command.add_input("--tool-table", options->tool_table,
-                      "LinuxCNC tool table: list its differences from the machine's tools");
+                      "LinuxCNC tool table, in the machine file's program.start_unit [mm]: list "
+                      "its differences from the machine's tools");
     command.add_flag("--effective", options->is_effective,
                      "print only the effective machine file: every key with its value");
     command.add_output("--report", options->report,

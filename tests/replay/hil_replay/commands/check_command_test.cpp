@@ -107,6 +107,30 @@ TEST_F(CheckCommand, WritesAPageOfTheMachine) {
     EXPECT_NE(page.find("2 s to 4 s: +50 mm; Y+ moves y to -y with x, a, c"), std::string::npos);
 }
 
+// A table in inch that is read in mm would differ in every length, or, worse, agree by chance.
+TEST_F(CheckCommand, NamesTheUnitOfAToolTable) {
+    (void)shop_.write("tool.tbl", "T1 Z4\n");
+    const std::string unit = "program: {start_unit: mm, ";
+    const std::string option = "--tool-table '" + shop_.file("tool.tbl") + "'";
+    const std::string silent = with(paper_, unit, "program: {");
+    ASSERT_EQ(run("check", silent, option), 0) << shop_.err;
+    EXPECT_TRUE(says(": tools read: 1, lengths in mm: program.start_unit is not stated\n"))
+        << shop_.out;
+    EXPECT_TRUE(says("tool.tbl:1: tool 1: length 4 mm, and "));
+    EXPECT_TRUE(says("tool.tbl: read in mm. If the control counts in inch, state program: "));
+    ASSERT_EQ(run("check", with(paper_, unit, "program: {start_unit: inch, "), option), 0)
+        << shop_.err;
+    EXPECT_TRUE(
+        says(": tools read: 1, lengths in inch, as program.start_unit of the machine "
+             "file\n"))
+        << shop_.out;
+    EXPECT_TRUE(says("tool.tbl:1: tool 1: length 4 inch (101.6 mm), and "));
+    (void)shop_.write("tool.tbl", "T1 Z140 D12\n");
+    ASSERT_EQ(run("check", paper_, option), 0) << shop_.err;
+    EXPECT_TRUE(says(": tools read: 1, lengths in mm, as program.start_unit")) << shop_.out;
+    EXPECT_FALSE(says("If the control counts in inch"));
+}
+
 TEST_F(CheckCommand, RefusesAToolThatContradictsItsLength) {
     const std::string tool = "cutter.stl, unit: ";
     const std::string wrong = with(paper_, tool + "mm", tool + "um");

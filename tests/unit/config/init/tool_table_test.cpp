@@ -91,6 +91,33 @@ TEST(ToolTable, EveryDifferenceIsOneLine) {
               "tools.\nm.yaml:40: tool 1 is not in t.tbl. Correct one of them.\n");
 }
 
+// The file's own figure is what a person searches for in it.
+TEST(ToolTable, ADifferenceInInchHasBothUnits) {
+    const std::vector<std::string> lines = tool_differences(
+        read_tool_table("T1 Z2.5 D0.25", "t.tbl", 25.4), "t.tbl", machine_with_tool(63));
+    ASSERT_EQ(lines.size(), 2U);
+    EXPECT_EQ(lines[0],
+              "t.tbl:1: tool 1: length 2.5 inch (63.5 mm), and 63 mm in m.yaml:40. Correct one of "
+              "them.");
+    EXPECT_EQ(lines[1],
+              "t.tbl:1: tool 1: diameter 0.25 inch (6.35 mm), and 6 mm in m.yaml:40. Correct one "
+              "of them.");
+}
+
+TEST(ToolTable, ALengthThatWouldFitInInchIsPointedOut) {
+    const auto line = [](const char* text) {
+        return tool_differences(read_tool_table(text, "t.tbl", 1), "t.tbl", machine_with_tool(100))
+            .at(0);
+    };
+    const std::string said =
+        " mm, and 100 mm in m.yaml:40. Correct one of them. Is the table in inch? Then state "
+        "program: {start_unit: inch}.";
+    EXPECT_EQ(line("T1 Z3.86"), "t.tbl:1: tool 1: length 3.86" + said) << "98.04 mm";
+    EXPECT_EQ(line("T1 Z3.85"),
+              "t.tbl:1: tool 1: length 3.85 mm, and 100 mm in m.yaml:40. Correct one of them.")
+        << "97.79 mm";
+}
+
 // Lengths and diameters are of the table, holder and reference of a length are not.
 TEST(ToolTable, InitWritesTheToolsOfTheTable) {
     std::vector<RoleGuess> roles = guess_roles({"table.stl", "head.stl"});
