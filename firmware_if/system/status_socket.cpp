@@ -13,12 +13,28 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <string_view>
 #include <utility>
 
 namespace axg {
 namespace {
 
 constexpr int kAnswerMs = 2000;  // for the reply; a guard held for longer has stopped anyway
+
+constexpr std::string_view kServiceFolder = "/run/axguardd/", kServiceSocket = "/status";
+
+/// Of the service, where the socket is its own: a person at the machine starts no axguardd by hand.
+std::string how_to_start(std::string_view path) {
+    if (!path.starts_with(kServiceFolder) || !path.ends_with(kServiceSocket) ||
+        path.size() <= kServiceFolder.size() + kServiceSocket.size()) {
+        return "Start axguardd run with --status-socket.";
+    }
+    path.remove_prefix(kServiceFolder.size());
+    path.remove_suffix(kServiceSocket.size());
+    return fmt::format(
+        "Start it: sudo systemctl start axguardd@{0}. Why it ended: journalctl -u axguardd@{0}.",
+        path);
+}
 
 /// False: no name of a socket.
 bool set_address(const std::string& path, sockaddr_un& address) noexcept {
@@ -197,7 +213,7 @@ void StatusSocket::hand_over(std::span<const int> readers, std::span<const char>
 }
 
 std::string status_path(const std::string& bus, const std::string& socket) {
-    return socket.empty() ? fmt::format("/run/axguardd/{}/status", bus) : socket;
+    return socket.empty() ? fmt::format("{}{}{}", kServiceFolder, bus, kServiceSocket) : socket;
 }
 
 std::string read_status(const std::string& path, std::string& fault) {
@@ -217,7 +233,7 @@ std::string read_status(const std::string& path, std::string& fault) {
     std::string text;
     if (!connect_to(made, address)) {
         fault = errno == ENOENT || errno == ECONNREFUSED
-                    ? fmt::format("{}: no guard. Start axguardd run with --status-socket.", path)
+                    ? fmt::format("{}: no guard. {}", path, how_to_start(path))
                     : fmt::format("{}: {}", path, std::strerror(errno));
         close(made);
         return {};

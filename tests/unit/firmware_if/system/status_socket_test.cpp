@@ -306,5 +306,19 @@ TEST_F(StatusCommand, WithoutAGuardOrWithAnotherProgramItIsThree) {
     EXPECT_EQ(run_axguardd({"status"}), kExitUsage);
 }
 
+// At the machine the guard is a service: nobody starts axguardd run there.
+TEST(ReadStatus, WithoutAGuardItNamesHowThatOneIsStarted) {
+    std::string fault;
+    EXPECT_EQ(read_status("/run/axguardd/nocan9/status", fault), "");
+    EXPECT_EQ(fault,
+              "/run/axguardd/nocan9/status: no guard. Start it: sudo systemctl start "
+              "axguardd@nocan9. Why it ended: journalctl -u axguardd@nocan9.");
+    for (const char* path : {"/run/axguardd/status", "/run/axguardd//status", "none.status"}) {
+        EXPECT_EQ(read_status(path, fault), "");
+        EXPECT_EQ(fault,
+                  std::string(path) + ": no guard. Start axguardd run with --status-socket.");
+    }
+}
+
 }  // namespace
 }  // namespace axg
