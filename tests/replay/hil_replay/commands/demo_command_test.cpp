@@ -4,6 +4,7 @@
 // ctest-labels: long
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <regex>
@@ -49,9 +50,13 @@ std::vector<std::string> next_commands(const std::string& screen) {
     return commands;
 }
 
+// Two of the commands behind "next" take a second line; a long path to the checkout makes more.
 TEST_F(DemoCommand, FitsOnOneScreen) {
+    constexpr std::size_t kSecondLines = 2;
     const auto lines = lines_of(screen);
-    EXPECT_LE(lines.size(), kScreenLines) << screen;
+    const auto wrapped = static_cast<std::size_t>(std::count_if(
+        lines.begin(), lines.end(), [](const std::string& line) { return line.ends_with('\\'); }));
+    EXPECT_LE(lines.size() - wrapped + kSecondLines, kScreenLines) << screen;
     EXPECT_LE(widest(lines), kScreenColumns) << screen;
 }
 
