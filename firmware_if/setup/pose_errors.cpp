@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "config/machine/machine_keys.hpp"
 #include "core/certificate/pair_queries.hpp"
@@ -22,18 +23,25 @@ std::vector<BodyExtent> extents_of(const std::vector<Mesh>& meshes) {
     return out;
 }
 
-/// Lists what each key of the table costs the pair when it is the only one above 0.
+/// What `value` costs the pair: without it the pair's error is smaller by so much.
+/// @param value  in `machine`; as before on return
+double cost_mm(double& value, const Machine& machine, const MachineMeshes& meshes,
+               const WorstPoseError& worst) {
+    const double stated = std::exchange(value, 0);
+    const double without_mm = find_pose_errors(machine, meshes).mm[worst.pair];
+    value = stated;
+    return worst.mm - without_mm;
+}
+
+/// Lists what each key of the table costs the pair.
 /// @param owner  in `machine`
 template <class Owner>
 void add_parts(ScalarKeys<Owner> table, const std::string& path, Owner& owner,
                const Machine& machine, const MachineMeshes& meshes, WorstPoseError& out) {
     for (const ScalarKey<Owner>& row : table) {
-        const double value = owner.*row.number;
+        double& value = owner.*row.number;
         if (value > 0) {
-            owner.*row.number = 0;
-            const double without_mm = find_pose_errors(machine, meshes).mm[out.pair];
-            owner.*row.number = value;
-            out.parts.push_back({path + row.key, out.mm - without_mm});
+            out.parts.push_back({path + row.key, cost_mm(value, machine, meshes, out)});
         }
     }
 }
@@ -94,6 +102,12 @@ WorstPoseError worst_pose_error(const LoadedMachine& loaded) {
     const std::vector<double>& mm = machine.pose_errors.mm;
     const auto most = std::max_element(mm.begin(), mm.end());
     WorstPoseError out{static_cast<std::uint32_t>(most - mm.begin()), *most, {}};
+    for (Axis& axis : machine.axes) {
+        if (axis.skew_mm > 0) {
+            out.parts.push_back({fmt::format("axes.{}.skew_mm", axis.name),
+                                 cost_mm(axis.skew_mm, machine, loaded.meshes, out)});
+        }
+    }
     for (Body& body : machine.bodies) {
         const std::string path = fmt::format("bodies.{}.", body.name);
         add_parts(joint_keys(AxisKind::rotary), path, body.joint, machine, loaded.meshes, out);

@@ -285,8 +285,8 @@ void GcodeInterpreter::use_start_unit(char letter) {
     }
     fault(std::string(1, letter),
           letter == 'F'
-              ? "written before any G20 or G21, and the machine file has no "
-                "program.start_unit; state it there, or write G20 or G21 in a line before F"
+              ? "written before any G20 or G21 (of one line F is read first), and the machine file "
+                "has no program.start_unit; state it there, or write G20 or G21 in a line before F"
               : "no G20 or G21 before this length, and the machine file has no "
                 "program.start_unit; state it there, or write G20 or G21");
     is_of_start = false;  // said once

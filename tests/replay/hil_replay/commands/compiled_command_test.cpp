@@ -125,6 +125,25 @@ TEST_F(CompiledCommand, MoreErrorThanAnEngineAcceptsIsRefused) {
         << shop->err;
 }
 
+/// The skew of a gantry is a part of the sum that check prints.
+TEST_F(CompiledCommand, CheckListsWhatASkewCosts) {
+    std::string text = test::content_of(test::kPaperMachine);
+    const std::string axis = "  Y: {kind: linear, ";
+    const std::size_t at = text.find(axis);
+    ASSERT_NE(at, std::string::npos);
+    text.insert(at + axis.size(), "skew_mm: 0.1, ");
+    (void)shop->write("skew.yaml", text);
+    ASSERT_EQ(shop->run("check skew.yaml --json=skew.json --mesh-root " +
+                        test::source_file("config/machines")),
+              kExitClean)
+        << shop->err;
+    const test::Json errors = document("skew.json").at("pose_errors");
+    ASSERT_EQ(errors.at("parts").size(), 1U) << errors.dump();
+    EXPECT_EQ(errors.at("parts").at(0).at("key"), "axes.Y.skew_mm");
+    EXPECT_EQ(errors.at("parts").at(0).at("mm"), errors.at("mm"));
+    EXPECT_GE(errors.at("mm").get<double>(), 0.1);
+}
+
 /// Stated errors cost the compiled machine the same, and the guard stops earlier for them.
 TEST_F(CompiledCommand, StatedErrorsCostTheSameAndStopEarlier) {
     std::string text = test::content_of(test::kPaperMachine);
