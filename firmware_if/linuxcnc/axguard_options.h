@@ -11,6 +11,10 @@
 #include "firmware_if/linuxcnc/axguard_joints.h"
 #include "firmware_if/linuxcnc/axguard_wire.h"
 
+#define AXG_FIT_WORDS                                                                              \
+    "axguard-stop: the machine file has %u axes and %u us (found %d, %u us). Make them equal; an " \
+    "axis with two joints needs skew_mm.\n"
+
 static inline axg_board_options axg_options_from(const double option[AXG_WIRE_OPTIONS]) {
     axg_board_options options;
     memset(&options, 0, sizeof options);

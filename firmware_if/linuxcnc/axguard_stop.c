@@ -15,11 +15,13 @@
 
 #include "firmware_if/board/axguard_board.h"
 #include "firmware_if/linuxcnc/axguard_home.h"
+#include "firmware_if/linuxcnc/axguard_jog.h"
 #include "firmware_if/linuxcnc/axguard_joints.h"
 #include "firmware_if/linuxcnc/axguard_length.h"
 #include "firmware_if/linuxcnc/axguard_options.h"
 #include "firmware_if/linuxcnc/axguard_period.h"
 #include "firmware_if/linuxcnc/axguard_pins.h"
+#include "firmware_if/linuxcnc/axguard_ramp.h"
 #include "firmware_if/linuxcnc/axguard_tool.h"
 #include "firmware_if/linuxcnc/axguard_wire.h"
 
@@ -35,7 +37,6 @@ RTAPI_MP_STRING(coordinates, "a letter for each joint, equal ones for a gantry: 
 #define STILL_PERIODS 20  // a hold shorter than this is reported as motion
 #define STILL_STEP 1e-8   // mm or degrees a period: what kinematics may add to a position
 #define ALIGNED 1e-4      // mm or degrees: LinuxCNC commands the place where the joint is
-#define ROUNDED 1.000001  // limits of a jog: what doubles of positions add to a difference
 #define MESSAGES_A_PERIOD 64
 #define ARM_PERIODS 5000U  // so long a person's arming waits for rest and for the guard
 #define WAIT_STEP_NS 20000
@@ -45,12 +46,15 @@ typedef struct stop_state {
     double option[AXG_WIRE_OPTIONS];
     uint8_t options_seen[AXG_WIRE_OPTIONS];
     bool has_begun;
-    uint64_t count;                     // servo periods: the number of the sample
-    uint64_t period_us;                 // as the thread runs
-    double at[AXG_WIRE_JOINTS_MAX];     // where the motor was sent: joint and motor offset, in the
-                                        // unit of the pins
-    double speed[AXG_WIRE_JOINTS_MAX];  // per second
-    bool has_at;
+    uint64_t count;                      // servo periods: the number of the sample
+    uint64_t period_us;                  // as the thread runs
+    double at[AXG_WIRE_JOINTS_MAX];      // where the motor was sent: joint and motor offset, in the
+                                         // unit of the pins
+    double speed[AXG_WIRE_JOINTS_MAX];   // per second
+    double before[AXG_WIRE_JOINTS_MAX];  // speed of the period before
+    bool has_at, has_places, has_tool;
+    uint32_t off;         // periods since the drives were switched off; 0: they are on
+    bool levels;          // what passed last passed by a permit
     bool is_synchronous;  // what is commanded passes without a jump
     bool is_ramping, is_latched;
     uint32_t still, ramp_periods;
@@ -98,7 +102,10 @@ static void begin(void) {
     const bool is_up = axg_board_power_up(&state.board, &options, state.nonce, now_us());
     axg_board_moves(&state.board, state.still < STILL_PERIODS, now_us());
     state.has_begun = is_complete && brakes && is_ours && is_up;
-    state.tool.number = (uint16_t)state.option[AXG_WIRE_TOOL];
+    if (!state.has_tool) {  // a guard that starts again changes no tool
+        state.tool.number = (uint16_t)state.option[AXG_WIRE_TOOL];
+        state.has_tool = is_complete;
+    }
     state.tool.step = AXG_TOOL_NONE;
     axg_length_begin(&state.length, state.tool.number);
     state.hashes_wanted = 0;
@@ -106,10 +113,8 @@ static void begin(void) {
     state.guard_is_ready = false;
     state.is_jog = false;
     if (!state.has_begun) {
-        rtapi_print_msg(RTAPI_MSG_ERR,
-                        "axguard-stop: the machine file has %u axes and %u us (found %d, %u us). "
-                        "Make them equal; an axis with two joints needs skew_mm.\n",
-                        options.axis_count, options.period_us, map.axes, (unsigned)state.period_us);
+        rtapi_print_msg(RTAPI_MSG_ERR, AXG_FIT_WORDS, options.axis_count, options.period_us,
+                        map.axes, (unsigned)state.period_us);
     }
 }
 
@@ -259,18 +264,33 @@ static void change_tool(bool may_move) {
 
 // --- Motion -----------------------------------------------------------------------------------
 
-// Reads LinuxCNC's commands. True: they agree with the places of the joints.
+static bool are_enabled(void) {
+    int count = 0;
+    while (count < joints && *pins->enable_in[count]) {
+        ++count;
+    }
+    return count == joints;
+}
+
+// Reads LinuxCNC's commands. True: they agree with the places of the joints. Switched off, LinuxCNC
+// commands what it measures: from there the joints go on when it is switched on after a rest.
 static bool read_commands(double wanted[]) {
+    const bool is_on_again = are_enabled() && state.off >= STILL_PERIODS && !state.is_ramping;
+    const bool is_new = !state.has_at || is_on_again;
     bool is_aligned = true;
+    state.has_places = true;
     for (int i = 0; i < joints; ++i) {
-        wanted[i] = *pins->in[i];
-        if (!state.has_at) {
+        const bool is_place = axg_ramp_is_place(*pins->in[i]);
+        wanted[i] = is_place ? *pins->in[i] : state.at[i];
+        if (is_new) {
             state.at[i] = wanted[i];
         }
+        state.has_places = state.has_places && is_place;
         is_aligned = is_aligned && fabs(wanted[i] - state.at[i]) <= in_pins(ALIGNED, i);
     }
     state.has_at = true;
-    return is_aligned;
+    state.off = are_enabled() ? 0 : (state.off < STILL_PERIODS ? state.off + 1 : state.off);
+    return is_aligned && state.has_places;
 }
 
 static bool is_homed(void) {
@@ -282,31 +302,10 @@ static bool is_homed(void) {
 }
 
 static void turn_home_key(void) {
-    const bool wants = !is_homed() && !axg_tool_is_unguarded(&state.tool);
+    const bool wants = state.has_begun && !is_homed() && !axg_tool_is_unguarded(&state.tool);
     const bool opens = axg_home_turn_key(&state.home, &state.board, *pins->home_unguarded, wants,
                                          state.still >= STILL_PERIODS, now_us());
     state.is_latched = state.is_latched && !opens;
-}
-
-// Each joint by itself, by the deceleration of the machine file: no joint waits for another one,
-// and none turns round.
-static bool ramp(double period_s) {
-    bool moves = false;
-    axg_level(&map, state.speed, is_homed());
-    for (int i = 0; i < joints; ++i) {
-        const double less = state.option[AXG_WIRE_STOPPING + map.axis[i]] * period_s;
-        const double speed = fabs(state.speed[i]) - less;
-        state.speed[i] = speed > 0 ? copysign(speed, state.speed[i]) : 0;
-        state.at[i] += state.speed[i] * period_s;
-        moves = moves || state.speed[i] != 0;
-    }
-    return moves;
-}
-
-static void hold(void) {
-    for (int i = 0; i < joints; ++i) {
-        state.speed[i] = 0;
-    }
 }
 
 static bool pass(const double wanted[], double period_s) {
@@ -320,46 +319,16 @@ static bool pass(const double wanted[], double period_s) {
     return moves;
 }
 
-// In a jog one axis moves, one way, within the limits of the machine file, and the others stay.
-static bool keeps_jog(const double wanted[], double period_s) {
-    bool keeps = true;
-    for (int i = 0; i < joints; ++i) {
-        const double step = wanted[i] - state.at[i];
-        if (map.axis[i] != map.axis[state.jog_joint]) {
-            keeps = keeps && fabs(step) <= in_pins(ALIGNED, i);
-            continue;
-        }
-        const double forward = state.jogs_down ? -step : step;
-        const double speed = forward > 0 ? forward / period_s : 0;
-        const double change = fabs(speed - fabs(state.speed[i])) / period_s;
-        keeps = keeps && forward >= -in_pins(ALIGNED, i) &&
-                speed <= ROUNDED * state.option[AXG_WIRE_JOG_SPEED + map.axis[i]] &&
-                change <= ROUNDED * state.option[AXG_WIRE_JOG_ACCELERATION + map.axis[i]];
-    }
-    return keeps;
-}
-
-static bool pass_jog(const double wanted[], double period_s) {
+static axg_jog jog_of(void) {
     const int axis = map.axis[state.jog_joint];
-    const double step = axg_mean_of(&map, wanted, axis) - axg_mean_of(&map, state.at, axis);
-    const double still = in_pins(STILL_STEP, state.jog_joint);
-    const bool moves = state.jogs_down ? step < -still : step > still;
-    hold();
-    for (int i = 0; i < joints && moves; ++i) {  // both of a gantry, or neither
-        if (map.axis[i] == axis) {
-            state.speed[i] = (wanted[i] - state.at[i]) / period_s;
-            state.at[i] = wanted[i];
-        }
+    axg_jog jog = {.joint = state.jog_joint,
+                   .goes_down = state.jogs_down,
+                   .speed = state.option[AXG_WIRE_JOG_SPEED + axis],
+                   .acceleration = state.option[AXG_WIRE_JOG_ACCELERATION + axis]};
+    for (int i = 0; i < joints; ++i) {
+        jog.aligned[i] = in_pins(ALIGNED, i);
     }
-    return moves;
-}
-
-static bool is_fast(void) {
-    int count = 0;
-    while (count < joints && state.speed[count] == 0) {
-        ++count;
-    }
-    return count < joints;
+    return jog;
 }
 
 // Whether two joints of one axis are farther apart than the proof allows, as LinuxCNC commands them
@@ -396,7 +365,7 @@ static axg_board_motion may_move(void) {
                         state.length.file_mm, tolerance_mm);
     }
     const bool skewed = is_skewed();
-    if ((differs || skewed) && is_fast()) {
+    if ((differs || skewed) && axg_ramp_is_fast(&map, state.speed)) {
         axg_board_stop(&state.board, now_us());
     }
     axg_board_motion motion = axg_board_may_move(&state.board, now_us());
@@ -404,29 +373,56 @@ static axg_board_motion may_move(void) {
     return motion;
 }
 
+// One period of a stop.
+static bool ramp(double period_s) {
+    if (!state.is_ramping) {
+        axg_ramp_begin(&map, state.speed, state.before, state.levels && is_homed());
+    }
+    state.ramp_periods = state.is_ramping ? state.ramp_periods + 1 : 1;
+    state.is_ramping =
+        axg_ramp_step(&map, state.at, state.speed, &state.option[AXG_WIRE_STOPPING], period_s);
+    state.is_latched = true;
+    state.is_synchronous = false;
+    state.arm_left = 0;  // a person arms after it
+    *pins->last_stop = state.ramp_periods;
+    return state.is_ramping;
+}
+
 // Moves the joints for one period. Without permission a joint in motion is brought to rest, and
-// one at rest stays; a command that leaves it then opens the E-stop chain.
+// one at rest stays; a command that leaves it then opens the E-stop chain. Where LinuxCNC has
+// switched the drives off, they stop the joints.
 static void move(bool may_pass, const double wanted[], bool is_aligned, double period_s) {
     bool moves = false;
-    if (may_pass && state.is_synchronous && state.is_jog && !keeps_jog(wanted, period_s)) {
+    if (state.off != 0 && !state.is_ramping) {
+        may_pass = false;
+        memset(state.speed, 0, sizeof state.speed);
+        is_aligned = true;
+    }
+    const axg_jog jog = jog_of();
+    if (may_pass && state.is_synchronous && state.is_jog &&
+        !axg_jog_keeps(&jog, &map, wanted, state.at, state.speed, period_s)) {
         axg_board_stop(&state.board, now_us());
         may_pass = false;
         state.is_latched = true;
     }
     if (may_pass && state.is_synchronous) {
-        moves = state.is_jog ? pass_jog(wanted, period_s) : pass(wanted, period_s);
-    } else if (state.is_ramping || is_fast()) {
-        state.ramp_periods = state.is_ramping ? state.ramp_periods + 1 : 1;
-        state.is_ramping = moves = ramp(period_s);
-        state.is_latched = true;
-        state.is_synchronous = false;
-        *pins->last_stop = state.ramp_periods;
+        memcpy(state.before, state.speed, sizeof state.before);
+        state.levels = !state.home.is_open;
+        if (state.is_jog) {
+            memset(state.speed, 0, sizeof state.speed);
+            moves = axg_jog_pass(&jog, &map, in_pins(STILL_STEP, jog.joint), wanted, state.at,
+                                 state.speed, period_s);
+        } else {
+            moves = pass(wanted, period_s);
+        }
+    } else if (state.is_ramping || axg_ramp_is_fast(&map, state.speed)) {
+        moves = ramp(period_s);
     } else {
         state.is_latched = state.is_latched || !is_aligned;
         state.is_synchronous = is_aligned;
     }
     if (!moves) {
-        hold();
+        memset(state.speed, 0, sizeof state.speed);
     }
     state.still = moves ? 0 : (state.still < STILL_PERIODS ? state.still + 1 : state.still);
 }
@@ -535,8 +531,11 @@ static void update(void* unused, long period_ns) {
     change_tool(motion.may_move);
     const bool is_aligned = read_commands(wanted);
     turn_home_key();
-    move((motion.may_move || state.home.is_open) && !state.is_latched, wanted, is_aligned,
-         (double)period_ns * 1e-9);
+    if (!state.has_places) {
+        axg_board_stop(&state.board, now_us());
+    }
+    move((motion.may_move || state.home.is_open) && !state.is_latched && state.has_places, wanted,
+         is_aligned, (double)period_ns * 1e-9);
     if (!state.home.is_open) {
         axg_board_moves(&state.board, state.still < STILL_PERIODS, now_us());
     }
@@ -569,7 +568,7 @@ int rtapi_app_main(void) {
     }
     memset(&state, 0, sizeof state);
     state.still = STILL_PERIODS;
-    state.tool.key_before = true;
+    state.tool.key_before = state.home.key_before = true;
     pins = hal_malloc(sizeof *pins);
     int fault = pins == NULL ? -1 : make_stop_pins(pins, joints, comp_id);
     fault = fault ? fault : hal_export_funct("axguard-stop", update, NULL, 1, 0, comp_id);

@@ -93,6 +93,8 @@ def scenarios(source):
         "late": (SWING, True, {"events": [{"do": "late", "after_s": 1.5}]}),
         "feed": (SWING, False, {"events": feed}),
         "estop": (SWING, True, {"events": [{"do": "estop", "after_s": 1.2}], "again": True}),
+        "estop_lag": (SWING, True, {"events": [{"do": "estop", "after_s": 1.2}], "again": True,
+                                    "lags": True}),
         "unguarded": (COLLIDE, False, {}),
         "jog": (COLLIDE, True, {"jogs": [order for order, _ in JOGS], "after": AFTER}),
         "tool": (TOOLS, False, {}),
@@ -120,9 +122,9 @@ def scenarios(source):
 
 
 # At most three minutes; the others run by hand, by name.
-USUAL = ["clean", "collide", "collide_inch", "kill_approach", "late", "estop", "unguarded", "jog",
-         "tool", "tool_collide", "tool_unknown", "tool_length", "tool_length_inch", "xyzac_clean",
-         "gantry_kill", "gantry_skew", "home_key"]
+USUAL = ["clean", "collide", "collide_inch", "kill_approach", "late", "estop", "estop_lag",
+         "unguarded", "jog", "tool", "tool_collide", "tool_unknown", "tool_length",
+         "tool_length_inch", "xyzac_clean", "gantry_kill", "gantry_skew", "home_key"]
 SAME_MM = 0.5  # between two runs of one collision: three periods of its speed
 
 
@@ -284,7 +286,8 @@ def check(name, is_stopped, said, rows, overruns, judged, facts):
         faults.append(f"{name}: contact: {judged['stops'][0]}")
     if name == "tool" and {row[10] for row in rows if row[6]} != {1, 2}:
         faults.append("tool: the samples had other tools than the program")
-    if (is_stopped and name != "estop") != bool(facts):
+    is_estop = name.startswith("estop")
+    if (is_stopped and not is_estop) != bool(facts):
         faults.append(f"{name}: {len(facts)} ramps in the record")
     for ramp in facts:
         if ramp["periods"] > ramp["promised"]:
@@ -308,11 +311,23 @@ def check(name, is_stopped, said, rows, overruns, judged, facts):
     if name == "jog":
         faults += check_jogs(said)
     # A stop of LinuxCNC's own ends the permits, and is none of the guard.
-    if name == "estop" and said["pins"]["axguard.phase"] not in ("2", "3"):
-        faults.append(f"estop: the guard stopped, or still permits: {said['pins']}")
-    if name in ("collide", "estop", "gantry_skew") and not said.get("on_again"):
+    if is_estop and said["pins"]["axguard.phase"] not in ("2", "3"):
+        faults.append(f"{name}: the guard stopped, or still permits: {said['pins']}")
+    if is_estop:
+        faults += check_frozen(name, said, rows)
+    if name in ("collide", "estop", "estop_lag", "gantry_skew") and not said.get("on_again"):
         faults.append(f"{name}: not armed and switched on again after the stop")
     return faults
+
+
+def check_frozen(name, said, rows):
+    """Switched off, LinuxCNC commands what it measures; the joints stay where they were sent."""
+    after = int(said["events"][0][1]) + 50
+    steps = [abs(y - x) for one, other in zip(rows, rows[1:]) if one[0] > after
+             for x, y in zip(one[1:6], other[1:6])]
+    if len(steps) < 1000 or max(steps) > 1e-3:
+        return [f"{name}: {len(steps)} steps after the E-stop, one of {max(steps, default=0)} mm"]
+    return []
 
 
 def check_record(name, place):

@@ -68,7 +68,7 @@ class Place:
         self.user = pwd.getpwnam("nobody") if os.geteuid() == 0 else pwd.getpwuid(os.geteuid())
 
     def prepare(self, program, guarded, simulation_wait_us, is_inch=False, is_gantry=False,
-                **scenario):
+                lags=False, **scenario):
         self.unit_mm = INCH_MM if is_inch else 1
         self.joints = [0, 1, 3, 4, 5] if is_gantry else [0, 1, 2, 3, 4]  # of the recorded axes
         shutil.rmtree(self.folder, ignore_errors=True)
@@ -90,6 +90,8 @@ class Place:
             self.add_second_y()
         self.write_ini()
         self.write_hal(guarded, simulation_wait_us)
+        if lags:
+            self.let_axes_lag()
         for path in (self.folder, *self.folder.rglob("*")):
             os.chown(path, self.user.pw_uid, self.user.pw_gid)
 
@@ -106,6 +108,13 @@ class Place:
                      (f"^net .*{index}1.*\n",
                       lambda match: match[0] + re.sub(index + "1", r"\g<1>2", match[0])))
         self.rewrite("yaml", ("  Y: {kind: linear, ", "  Y: {kind: linear, skew_mm: 0.1, "))
+
+    def let_axes_lag(self):
+        """Behind the command, as the axes of a machine do, by 5 ms."""
+        self.rewrite("hal", ("^loadrt and2$", "loadrt and2\nloadrt lowpass count=5"),
+                     (r"^net out-(\d) (\S+) => (\S+)$", r"net out-\1 \2 => lowpass.\1.in\n"
+                      r"net lag-\1 lowpass.\1.out => \3\nsetp lowpass.\1.gain 0.2\n"
+                      r"addf lowpass.\1 servo-thread"))
 
     def rewrite(self, suffix, *changes):
         file = self.folder / f"{self.name}.{suffix}"

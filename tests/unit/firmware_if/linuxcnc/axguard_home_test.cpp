@@ -61,10 +61,14 @@ TEST_F(HomeKey, StopsAnArmedBoardWhenItOpens) {
     EXPECT_EQ(board.phase, AXG_BOARD_STOPPED) << "nobody arms while the joints travel";
 }
 
-TEST_F(HomeKey, AConstantSignalLeadsOutOfNoStop) {
-    EXPECT_FALSE(period(true, false, true));
-    EXPECT_FALSE(period(true, true, true)) << "open, but by no turn";
-    EXPECT_TRUE(home.is_open);
+TEST_F(HomeKey, AConstantSignalOpensNothing) {
+    home.key_before = true;  // as when the component is loaded
+    EXPECT_FALSE(period(true, true, true));
+    EXPECT_FALSE(home.is_open);
+    (void)period(false, true, true);
+    (void)period(true, false, true);  // turned while all are homed
+    (void)period(true, true, true);
+    EXPECT_FALSE(home.is_open) << "turned before a joint lost its home";
 }
 
 }  // namespace
