@@ -134,8 +134,8 @@ def gets_a_permit(folder):
             time.sleep(0.3)
             pin(folder, "setp", "axguard-stop.arm", "1")
             time.sleep(1)
+        shell.put("shutdown")
     finally:
-        os.killpg(process.pid, signal.SIGINT)
         wait_for_end(process, master)
     print("ok: paper-trunnion starts without a display, and gets a permit")
 
@@ -148,13 +148,20 @@ def read(master):
 
 
 def wait_for_end(process, master):
-    """A terminal that nobody reads would hold what prints to it."""
+    """A terminal that nobody reads would hold what prints to it. What does not end by itself is
+    ended, and its shared memory, which the next LinuxCNC would find, is removed."""
     end = time.monotonic() + 30
-    while process.poll() is None:
+    while process.poll() is None and time.monotonic() < end:
         read(master)
-        if time.monotonic() > end:
-            os.killpg(process.pid, signal.SIGKILL)
         time.sleep(0.1)
+    if process.poll() is None:
+        os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+        subprocess.run(["pkill", "-KILL", "-u", str(user().pw_uid), "-f", "rtapi_app|milltask|"
+                        "linuxcncsvr|linuxcncrsh|axguard-hal"], check=False)
+        for key in ("0x48484c34", "0x48414c32", "0x00000064"):  # of HAL, RTAPI and motion
+            subprocess.run(["ipcrm", "-M", key], stderr=subprocess.DEVNULL, check=False)
+        pathlib.Path("/tmp/linuxcnc.lock").unlink(missing_ok=True)
     os.close(master)
 
 
