@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/base/assert.hpp"
+#include "hil_replay/gcode/plane_point.hpp"
 
 namespace axg {
 namespace {
@@ -22,37 +23,17 @@ constexpr double kCosineRest = 1e-12;
 constexpr double kChordRest = 1e-9;  // of the largest coordinate: samples at one place
 constexpr double kReachMax = 1e6;    // far beyond any travel; its powers are numbers
 
-struct Plane {
-    double first = 0, second = 0;
-};
-
-Plane operator+(Plane a, Plane b) {
-    return {a.first + b.first, a.second + b.second};
-}
-Plane operator-(Plane a, Plane b) {
-    return {a.first - b.first, a.second - b.second};
-}
-Plane operator*(double factor, Plane a) {
-    return {factor * a.first, factor * a.second};
-}
-double dot(Plane a, Plane b) {
-    return a.first * b.first + a.second * b.second;
-}
-double length(Plane a) {
-    return std::hypot(a.first, a.second);
-}
-
 /// A point and the direction in which the curve passes it; the direction is 0 0 where it has none.
 struct Sample {
-    Plane at, along;
+    PlanePoint at, along;
 };
 
-Plane direction(Plane a) {
+PlanePoint direction(PlanePoint a) {
     const double size = length(a);
-    return size > 0 && std::isfinite(size) ? 1 / size * a : Plane{};
+    return size > 0 && std::isfinite(size) ? 1 / size * a : PlanePoint{};
 }
 
-Plane place_at(std::span<const SplinePoint> points, std::uint32_t order, double parameter) {
+PlanePoint place_at(std::span<const SplinePoint> points, std::uint32_t order, double parameter) {
     const SplinePoint point = spline_at(points, order, parameter);
     return {point.first, point.second};
 }
@@ -66,9 +47,9 @@ Sample sample_at(std::span<const SplinePoint> points, std::uint32_t order, doubl
 }
 
 /// A circle through both ends that leaves the first along `tangent`, or the line between them.
-SplinePiece bend(Plane from, Plane to, Plane tangent) {
+SplinePiece bend(PlanePoint from, PlanePoint to, PlanePoint tangent) {
     SplinePiece piece{.end_first = to.first, .end_second = to.second};
-    const Plane chord = to - from;
+    const PlanePoint chord = to - from;
     const double across = 2 * (chord.second * tangent.first - chord.first * tangent.second);
     if (std::abs(across) > kStraight) {
         const double radius = dot(chord, chord) / across;  // positive: the centre is to the left
@@ -83,7 +64,7 @@ SplinePiece bend(Plane from, Plane to, Plane tangent) {
 /// The length of both tangents of a pair: its positive root. The pair meets at half the way
 /// between their ends, along the line that joins these.
 double tangent_length(const Sample& from, const Sample& to) {
-    const Plane back = from.at - to.at, turn = from.along - to.along;
+    const PlanePoint back = from.at - to.at, turn = from.along - to.along;
     const double square = -dot(turn, turn);  // below 0
     const double middle = 2 * dot(back, from.along + to.along), rest = dot(back, back);
     const double root = std::sqrt(middle * middle - 4 * square * rest);
@@ -91,7 +72,7 @@ double tangent_length(const Sample& from, const Sample& to) {
 }
 
 std::string fault_between(const Sample& from, const Sample& to, double reach) {
-    const Plane turn = from.along - to.along, chord = to.at - from.at;
+    const PlanePoint turn = from.along - to.along, chord = to.at - from.at;
     if (!(dot(from.along, from.along) > 0) || !(dot(to.along, to.along) > 0) ||
         !(length(chord) > kChordRest * reach)) {
         return "the curve stands still or turns back at once, and LinuxCNC's arcs have no "
@@ -156,8 +137,8 @@ SplineShape solve_spline(std::span<const SplinePoint> points, std::uint32_t orde
             return shape;
         }
         const double size = tangent_length(from, to);
-        const Plane first = from.at + size * from.along, second = to.at - size * to.along;
-        const Plane middle = 0.5 * (first + second);
+        const PlanePoint first = from.at + size * from.along, second = to.at - size * to.along;
+        const PlanePoint middle = 0.5 * (first + second);
         shape.pieces.push_back(bend(from.at, middle, from.along));
         shape.pieces.push_back(bend(middle, to.at, direction(second - middle)));
         from = to;

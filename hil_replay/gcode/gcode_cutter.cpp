@@ -16,21 +16,6 @@ constexpr double kMoreTurnInch = 0.001;
 constexpr const char* kGouge = "an inner corner that the tool cannot reach without gouging";
 constexpr const char* kSmall = "the tool's radius is not smaller than the arc's";
 
-PlanePoint operator+(PlanePoint a, PlanePoint b) {
-    return {a.first + b.first, a.second + b.second};
-}
-PlanePoint operator-(PlanePoint a, PlanePoint b) {
-    return {a.first - b.first, a.second - b.second};
-}
-PlanePoint operator*(double k, PlanePoint a) {
-    return {k * a.first, k * a.second};
-}
-double dot(PlanePoint a, PlanePoint b) {
-    return a.first * b.first + a.second * b.second;
-}
-double length(PlanePoint a) {
-    return std::hypot(a.first, a.second);
-}
 PlanePoint unit(PlanePoint a) {
     return (1 / length(a)) * a;
 }

@@ -8,14 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "hil_replay/gcode/plane_point.hpp"
 #include "hil_replay/motion/program.hpp"
 
 namespace axg {
-
-/// A point or a way in the plane, mm.
-struct PlanePoint {
-    double first = 0, second = 0;
-};
 
 class CutterPath {
   public:
