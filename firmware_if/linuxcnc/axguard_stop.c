@@ -264,18 +264,24 @@ static void change_tool(bool may_move) {
 
 // --- Motion -----------------------------------------------------------------------------------
 
-static bool are_enabled(void) {
+// @param bits  a pin of each joint
+static bool are_set(hal_bit_t* const bits[]) {
     int count = 0;
-    while (count < joints && *pins->enable_in[count]) {
+    while (count < joints && *bits[count]) {
         ++count;
     }
     return count == joints;
 }
 
+static bool is_homed(void) {
+    return are_set(pins->homed);
+}
+
 // Reads LinuxCNC's commands. True: they agree with the places of the joints. Switched off, LinuxCNC
 // commands what it measures: from there the joints go on when it is switched on after a rest.
 static bool read_commands(double wanted[]) {
-    const bool is_on_again = are_enabled() && state.off >= STILL_PERIODS && !state.is_ramping;
+    const bool is_on = are_set(pins->enable_in);
+    const bool is_on_again = is_on && state.off >= STILL_PERIODS && !state.is_ramping;
     const bool is_new = !state.has_at || is_on_again;
     bool is_aligned = true;
     state.has_places = true;
@@ -289,16 +295,8 @@ static bool read_commands(double wanted[]) {
         is_aligned = is_aligned && fabs(wanted[i] - state.at[i]) <= in_pins(ALIGNED, i);
     }
     state.has_at = true;
-    state.off = are_enabled() ? 0 : (state.off < STILL_PERIODS ? state.off + 1 : state.off);
+    state.off = is_on ? 0 : (state.off < STILL_PERIODS ? state.off + 1 : state.off);
     return is_aligned && state.has_places;
-}
-
-static bool is_homed(void) {
-    int count = 0;
-    while (count < joints && *pins->homed[count]) {
-        ++count;
-    }
-    return count == joints;
 }
 
 static void turn_home_key(void) {
