@@ -122,6 +122,7 @@ void StopCertificate::prove(const Engine& engine,
             ? reach_for(permits_.longer(), bounds_.asks_raise ? bounds_.raised : bounds_.now)
             : Reach{};
     reach_ = reach_for(permits_.least(), bounds_.now);
+    proven_reach_ = reach_.box;
     tasks_.list(tools_, snapshot(), reach_);
     const bool is_known = jog_.is_on() ? jog_.apply(engine, motion_, tasks_) : reach_.is_known;
     prove_tasks(engine, is_known, wider);
@@ -167,6 +168,7 @@ void StopCertificate::take_wider(const JointBox& box) noexcept {
         }
     }
     permits_.take(are_all_proven);
+    proven_reach_ = are_all_proven ? box : reach_.box;
 }
 
 void StopCertificate::keep() noexcept {

@@ -90,6 +90,8 @@ class StopCertificate {
     [[nodiscard]] JointBox reach(std::uint32_t samples) const noexcept;
 
     // Results of the last `prove`:
+    /// Every position until standstill, for a permit of `cycle().samples`.
+    [[nodiscard]] const JointBox& proven_reach() const noexcept { return proven_reach_; }
     [[nodiscard]] StopCycle cycle() const noexcept {
         return {.status = status_,
                 .known_answer_signature = work_.known_answer_signature,
@@ -169,6 +171,7 @@ class StopCertificate {
     SpeedBounds bounds_;
     SnapshotStatus status_ = SnapshotStatus::not_run;
     Reach reach_;  // of the last `prove`
+    JointBox proven_reach_;
     StagedWork work_;
 };
 

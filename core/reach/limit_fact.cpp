@@ -21,6 +21,8 @@ const char* to_text(LimitKind kind) noexcept {
             return "frozen_axis";
         case LimitKind::stopping:
             return "stopping";
+        case LimitKind::left_reach:
+            return "left_reach";
     }
     return "none";
 }

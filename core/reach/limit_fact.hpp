@@ -17,6 +17,7 @@ enum class LimitKind : std::uint8_t {
     acceleration_range,  // bounds of the acceleration contradict each other
     frozen_axis,         // its count rests though no motion within the limits could stop there
     stopping,            // a stop harder than its drive can brake: stopping_most_...
+    left_reach,          // outside the reach of the last permit: a stop too late or too soft
 };
 [[nodiscard]] const char* to_text(LimitKind kind) noexcept;
 
@@ -25,8 +26,9 @@ struct LimitFact {
     LimitKind kind = LimitKind::none;
     std::uint32_t axis = kNoIndex;
     double measured = 0;  // the least value that explains the positions; for a range, the gap; for
-                          // a frozen axis, the least speed before
-    double declared = 0;  // by the machine file; 0 for a range or a frozen axis
+                          // a frozen axis, the least speed before; for
+                          // left_reach, the distance outside
+    double declared = 0;  // by the machine file; 0 for a range, a frozen axis or left_reach
     std::uint64_t sample = 0;
 };
 

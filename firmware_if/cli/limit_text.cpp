@@ -18,6 +18,8 @@ const char* word_of(LimitFigure figure) noexcept {
             return "acceleration";
         case LimitFigure::jerk:
             return "jerk";
+        case LimitFigure::position:
+            return "position";
     }
     return "speed";
 }
@@ -46,6 +48,12 @@ char* write_fact(const LimitFact& fact, const Axis& axis, char* out, std::size_t
                                     "(stopping_most)",
                                     axis.name, measured, unit, declared, unit)
                 .out;
+        case LimitKind::left_reach:
+            return fmt::format_to_n(out, size,
+                                    "axis {}: {:.3g} {} beyond where its last permit let it stop "
+                                    "(left_reach)",
+                                    axis.name, measured, unit)
+                .out;
         case LimitKind::none:
         case LimitKind::speed:
         case LimitKind::acceleration:
@@ -64,6 +72,10 @@ const char* next_step(LimitKind kind, StopReason reason) noexcept {
     }
     if (kind == LimitKind::frozen_axis || kind == LimitKind::stopping) {
         return "The other axes went on: check encoder and drive of this axis";
+    }
+    if (kind == LimitKind::left_reach) {
+        return "It braked late or softly: measure board_reaction_ms and stopping_... anew with "
+               "axguardd board-test before arming";
     }
     return "Correct the limits of this axis in the machine file or in the control; axguard inspect "
            "--limits proposes values";
@@ -84,6 +96,8 @@ LimitFigure figure_of(LimitKind kind) noexcept {
             return LimitFigure::acceleration;
         case LimitKind::jerk:
             return LimitFigure::jerk;
+        case LimitKind::left_reach:
+            return LimitFigure::position;
     }
     return LimitFigure::speed;
 }
@@ -97,6 +111,8 @@ const char* unit_of(const Axis& axis, LimitFigure figure) noexcept {
             return is_rotary ? "deg/s2" : "mm/s2";
         case LimitFigure::jerk:
             return is_rotary ? "deg/s3" : "mm/s3";
+        case LimitFigure::position:
+            return is_rotary ? "deg" : "mm";
     }
     return "";
 }

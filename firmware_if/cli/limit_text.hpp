@@ -13,7 +13,7 @@
 
 namespace axg {
 
-enum class LimitFigure : std::uint8_t { speed, acceleration, jerk };
+enum class LimitFigure : std::uint8_t { speed, acceleration, jerk, position };
 [[nodiscard]] LimitFigure figure_of(LimitKind kind) noexcept;
 
 /// mm/s, deg/s2...

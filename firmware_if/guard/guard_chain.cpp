@@ -11,18 +11,20 @@ GuardChain::GuardChain(const Machine& machine, Engine engine,
       engine_(engine),
       containment_test_(containment_test),
       parts_(parts),
-      cap_guard_(machine) {
+      cap_guard_(machine),
+      reach_watch_(machine) {
     if (parts_.stop_certificate == nullptr) {
         parts_.speed_advisory = nullptr;
     }
 }
 
-void GuardChain::note_caps(const CapFacts& caps, bool is_first) noexcept {
+void GuardChain::note_sample(const CapFacts& caps, bool is_first) noexcept {
     std::array<double, kAxesMax> errors{};
     for (std::uint32_t i = 0; i < machine_.axes.size(); ++i) {
         errors[i] = parts_.stop_certificate->held_error(i);
     }
     cap_guard_.note(snapshot_, caps, is_first, errors);
+    reach_watch_.note(snapshot_, is_first, errors);
 }
 
 void GuardChain::take(const ReceiverEvent& event, const CapFacts& caps) noexcept {
@@ -32,7 +34,7 @@ void GuardChain::take(const ReceiverEvent& event, const CapFacts& caps) noexcept
             // Before VALID the receiver may begin anew, and samples are then counted by the clock.
             const bool is_first = event.state != ReceiverState::valid;
             parts_.stop_certificate->note(snapshot_, is_first);
-            note_caps(caps, is_first);
+            note_sample(caps, is_first);
         }
     } else if (event.kind == ReceiverEvent::Kind::look_ahead &&
                parts_.stop_certificate != nullptr) {
@@ -106,6 +108,9 @@ CycleResult GuardChain::decide(bool ready, bool is_armed) noexcept {
         const bool is_known = parts_.speed_advisory != nullptr && parts_.speed_advisory->is_known();
         cap_guard_.judge(parts_.stop_certificate->cycle(),
                          is_known ? &parts_.speed_advisory->wish() : nullptr, is_armed, result);
+    }
+    if (parts_.stop_certificate != nullptr) {
+        reach_watch_.judge(parts_.stop_certificate->proven_reach(), is_armed, result);
     }
     if (parts_.margin_advisory != nullptr && parts_.margin_advisory->worst() != kNoIndex) {
         const std::uint32_t pair = parts_.margin_advisory->worst();

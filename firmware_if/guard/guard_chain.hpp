@@ -17,6 +17,7 @@
 #include "core/guard/distance_need.hpp"
 #include "core/guard/margin_advisory.hpp"
 #include "core/guard/monitor.hpp"
+#include "core/guard/reach_watch.hpp"
 #include "core/guard/speed_advisory.hpp"
 #include "core/machine/machine.hpp"
 #include "firmware_if/receiver/axis_receiver.hpp"
@@ -71,8 +72,11 @@ class GuardChain {
     /// that it did not query. Call it after sending the frames: a permit waits for no advisory.
     void update_advisories() noexcept;
 
-    /// Calls CapGuard::ignore, for traces.
-    void ignore_caps() noexcept { cap_guard_.ignore(); }
+    /// For traces: their machine obeys neither caps nor stops of this guard.
+    void ignore_obedience() noexcept {
+        cap_guard_.ignore();
+        reach_watch_.ignore();
+    }
     /// Sets the recorded order of a run that this chain joins later.
     void set_cap_order(const CapOrder& order) noexcept { cap_guard_.set_order(order); }
 
@@ -100,7 +104,7 @@ class GuardChain {
     [[nodiscard]] std::span<const std::int64_t> pair_ns() const noexcept;
 
   private:
-    void note_caps(const CapFacts& caps, bool is_first) noexcept;
+    void note_sample(const CapFacts& caps, bool is_first) noexcept;
     void keep_awake() noexcept;
     [[nodiscard]] bool owes_stop(bool is_armed) noexcept;
     void evaluate_together() noexcept;
@@ -114,6 +118,7 @@ class GuardChain {
     const ContainmentTest& containment_test_;
     ChainParts parts_;
     CapGuard cap_guard_;
+    ReachWatch reach_watch_;
     bool has_own_stop_ = false;  // begun under permits, and not over
     AxisSnapshot snapshot_;
     PairQueries pair_queries_;

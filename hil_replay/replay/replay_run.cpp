@@ -59,7 +59,7 @@ ReplayRun::ReplayRun(const Machine& machine, Engine engine, const ContainmentTes
       live_{.machine = machine, .chain = chain_, .clock = options.clock},
       pairs_(machine.pairs.size()),
       limits_(machine) {
-    chain_.ignore_caps();
+    chain_.ignore_obedience();
 }
 
 void ReplayRun::start(std::int64_t now_us) {

@@ -16,8 +16,8 @@ from sources import finish, read_text, tracked_files
 
 # Pages, most words of all of them: a limit against growth. The first four sum to 50,460.
 SHELVES = {
-    "guide": (["README.md", "docs/guide/*"], 10_180),
-    "theory": (["docs/theory/*"], 13_090),
+    "guide": (["README.md", "docs/guide/*"], 10_208),
+    "theory": (["docs/theory/*"], 13_165),
     "reference": (["docs/reference/*"], 18_690),
     "measurements and decisions": (["docs/measurements/*", "docs/decisions/*"], 8_500),
     "rules": (["CONTRIBUTING.md", "docs/glossary.md", "docs/style.md"], 3_760),

@@ -43,6 +43,8 @@ enum class Wrong : std::uint8_t {
     frozen_trusted,  // and the guard takes it for true
     aged,            // positions are up to two periods old, and the machine file does not say so
     aged_and_said,   // nothing: it does
+    soft_stop,       // the board brakes with less than half of what it promises
+    late_stop,       // it begins to brake later than it promises
 };
 
 struct ApproachScene {
@@ -67,6 +69,7 @@ struct ApproachOutcome {
     BoardState state = BoardState::waiting;
     DriveStop stop;
     bool has_moved = false, touches = false, is_slowed = false, is_frozen = false;
+    bool left_reach = false;  // at any time
     double least_mm = HUGE_VAL, rest_mm = HUGE_VAL;
     std::uint64_t breaches = 0;      // MotionBoard::cap_breaches
     std::uint64_t caught_after = 0;  // samples from the first of them to left_cap; 0: none
@@ -269,6 +272,11 @@ class ApproachRun {
             drawn_.faults.lost = 0;  // a lost sample may hide a freeze at twice the speed
             machine_.guard.reports_limits = wrong == Wrong::frozen_trusted;
         }
+        if (wrong == Wrong::soft_stop) {
+            for (Axis& axis : of_board_.axes) {
+                axis.stopping_min *= 0.4;
+            }
+        }
         if (wrong == Wrong::ignored) {
             drawn_.faults = {.silence = Silence::from_beginning};
         }
@@ -329,6 +337,9 @@ class ApproachRun {
         options.tool = drawn_.story.tool;
         options.cap_fault = cap_fault_of(wrong_);
         options.cap_smooth_s = static_cast<double>(drawn_.story.lazy_ticks) * kTickS;
+        if (wrong_ == Wrong::late_stop) {
+            options.reaction_us_max += 100'000;
+        }
         if (wrong_ == Wrong::ignored) {
             lab::forget_dead_man(options);
             options.cap = CapPromise::none;
@@ -416,6 +427,7 @@ class ApproachRun {
                 frozen_->look(board.axes());
                 out_.is_frozen = frozen_->is_frozen();
             }
+            out_.left_reach = out_.left_reach || guard.result().limit.kind == LimitKind::left_reach;
             out_.is_slowed =
                 out_.is_slowed || (out_.has_moved && board.permits().speed_cap() < kCapRapid);
         }

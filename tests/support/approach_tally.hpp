@@ -15,8 +15,8 @@ namespace axg::test {
 
 struct ApproachTally {
     std::uint64_t approaches = 0, moved = 0, touched = 0, stopped = 0, passed = 0, slowed = 0;
-    std::uint64_t frozen = 0, frozen_touched = 0, left_cap = 0, left_limits = 0, breaches = 0,
-                  uncovered = 0, refused_cap = 0;
+    std::uint64_t frozen = 0, frozen_touched = 0, left_cap = 0, left_limits = 0, left_reach = 0;
+    std::uint64_t breaches = 0, uncovered = 0, refused_cap = 0;
     std::uint64_t samples = 0, refused = 0;
     WildCounts wire;
     double least_mm = HUGE_VAL;
@@ -34,6 +34,7 @@ struct ApproachTally {
         slowed += one.is_slowed ? 1 : 0;
         left_cap += one.stop.reason == StopReason::left_cap ? 1 : 0;
         left_limits += one.stop.reason == StopReason::left_limits ? 1 : 0;
+        left_reach += one.left_reach ? 1 : 0;
         breaches += one.breaches;
         uncovered += one.uncovered;
         refused_cap += one.refused_cap;

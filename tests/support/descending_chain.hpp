@@ -69,6 +69,15 @@ class DescendingChain {
             step(is_armed);
         }
     }
+    /// Reports standstill, until no permit is in force.
+    void rest() {
+        step_mm = 0;
+        snapshot_.mode = kModeStandstill;
+        for (int i = 0; i < 20; ++i) {
+            step(false);
+        }
+        snapshot_.mode = kModeMoving;
+    }
     [[nodiscard]] WithheldPermit withheld() const {
         return {.why = result.result.has_permit ? WithheldPermit::Why::nothing
                                                 : WithheldPermit::Why::not_proven,

@@ -64,6 +64,14 @@ TEST(LimitText, AStopOfTheBoardsOwnIsNoWrongLimit) {
         "other axes went on: check encoder and drive of this axis");
 }
 
+TEST(LimitText, AStopThatWentTooFarLeadsToTheBoardTest) {
+    EXPECT_EQ(limit_text({.kind = LimitKind::left_reach, .axis = 1, .measured = kPi / 180},
+                         StopReason::left_limits, two_axes()),
+              "axis C: 1 deg beyond where its last permit let it stop (left_reach). It braked late "
+              "or softly: measure board_reaction_ms and stopping_... anew with axguardd board-test "
+              "before arming");
+}
+
 TEST(LimitText, AnAxisThatIsNoneAndALineThatIsFullWriteNothingBeyondIt) {
     const Machine machine = two_axes();
     EXPECT_EQ(limit_text({.kind = LimitKind::speed, .axis = 7}, StopReason::left_limits, machine),

@@ -119,6 +119,8 @@ TEST(WhyDesk, TheStopInForceStays) {
     const double needed_mm = offline(chain).need.sum_mm();
     chain.step(true);  // submitted before the bus thread had the stop
     chain.desk.set_stop(stop);
+    chain.change_step(0, false);
+    chain.rest();
     chain.change_step(-0.1, false);
     for (int i = 0; i < 200; ++i) {
         chain.step(false);
