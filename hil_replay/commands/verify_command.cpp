@@ -40,15 +40,6 @@ struct VerifyArguments {
 
 constexpr double kAbove = 1 + 1e-9;  // of a feed: roundings of the override
 
-/// The override multiplies programmed feeds, not rapids; G93's durations shrink by it.
-void scale_feeds(Program& program, int percent) {
-    for (Move& move : program.moves) {
-        if (move.feed_kind != FeedKind::rapid) {
-            move.feed *= percent / 100.0;
-        }
-    }
-}
-
 VerifyEvent event_at(const ProgramLines& lines, const AxisSnapshot& snapshot, std::string what) {
     VerifyEvent event{.what = std::move(what), .tool = snapshot.tool};
     event.time_s = static_cast<double>(snapshot.arrived_us - kTraceStartUs) * 1e-6;

@@ -69,4 +69,13 @@ struct Program {
     std::vector<TipControl> controls;  // one for each tool offset
 };
 
+/// A feed override multiplies programmed feeds, not rapids; G93's durations shrink by it.
+inline void scale_feeds(Program& program, int percent) {
+    for (Move& move : program.moves) {
+        if (move.feed_kind != FeedKind::rapid) {
+            move.feed *= percent / 100.0;
+        }
+    }
+}
+
 }  // namespace axg
