@@ -19,6 +19,7 @@ int run_axguard(std::vector<std::string> words, const ReplayObserver& observer) 
     add_check(line);
     add_compile(line);
     add_verify(line);
+    add_certify(line);
     add_simulate(line);
     add_replay(line, observer);
     add_drive(line);

@@ -21,5 +21,6 @@ void add_drive(CommandLine& line);
 void add_inspect(CommandLine& line);
 void add_demo(CommandLine& line);
 void add_verify(CommandLine& line);
+void add_certify(CommandLine& line);
 
 }  // namespace axg
