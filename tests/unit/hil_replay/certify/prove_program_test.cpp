@@ -22,8 +22,10 @@ namespace {
 
 /// A machine with a program, and the proof of it.
 struct Certified {
-    Certified(const std::string& machine, const std::string& name, std::uint32_t threads = 1) {
+    Certified(const std::string& machine, const std::string& name, std::uint32_t threads = 1,
+              StopPromise promise = StopPromise::independent) {
         EXPECT_TRUE(test::load_example(machine, loaded));
+        loaded.machine.guard.promise = promise;
         program = test::read_example(name, loaded.machine);
         PlannedPath planned = plan_chord_path(loaded.machine, program, {}, {}, {});
         path = std::move(planned.path);
@@ -95,6 +97,18 @@ TEST_P(CertifiedExample, HasEqualBytesForAnyNumberOfThreads) {
 
 INSTANTIATE_TEST_SUITE_P(Programs, CertifiedExample, testing::ValuesIn(test::kExamples),
                          [](const auto& example) { return test::name_of(example.param); });
+
+// A stop along the path leads nowhere else: programs that are near need no room for one.
+TEST(ProveProgram, NearProgramsAreCertifiedWhereStopsKeepThePath) {
+    for (const test::Example& example : test::kExamples) {
+        const Certified one(example.machine, example.program, 1, StopPromise::path_keeping);
+        EXPECT_TRUE(one.proof.open.empty()) << example.program;
+        EXPECT_TRUE(one.path.speeds.empty());
+        for (std::size_t i = 0; i < one.tasks.tasks.size(); ++i) {
+            expect_cover(one.path, one.tasks.tasks[i].tool, one.proof.tasks[i]);
+        }
+    }
+}
 
 /// Segments of a task that are holes.
 std::vector<bool> holes_of(const ChordPath& path, const std::vector<ProvenStretch>& stretches) {
