@@ -6,6 +6,7 @@
 
 #include "core/collision/tree.hpp"
 #include "cuda/engine/engine_parts.hpp"
+#include "cuda/engine/memory_block.hpp"
 
 namespace axg {
 namespace {
@@ -13,25 +14,6 @@ namespace {
 using namespace cuda;
 
 constexpr std::uint32_t kWarmUpUs = 10'000'000;
-
-/// Divides one block of memory into arrays. Without a block it only counts the bytes needed.
-class MemoryBlock {
-  public:
-    explicit MemoryBlock(std::byte* base) : base_(base) {}
-    template <class T>
-    T* take(std::size_t count) {
-        used_ = (used_ + kAlignment - 1) / kAlignment * kAlignment;
-        const std::size_t at = used_;
-        used_ += count * sizeof(T);
-        return base_ == nullptr ? nullptr : reinterpret_cast<T*>(base_ + at);
-    }
-    [[nodiscard]] std::size_t used() const { return used_; }
-
-  private:
-    static constexpr std::size_t kAlignment = 256;
-    std::byte* base_;
-    std::size_t used_ = 0;
-};
 
 struct Trees {
     const TreeBodies& bodies;
@@ -285,13 +267,7 @@ void warm_up(CudaEngine& engine) {
 
 }  // namespace
 
-std::optional<CudaEngine> CudaEngine::create(std::span<const Mesh* const> meshes,
-                                             const Capacities& capacities,
-                                             const CudaOptions& options, std::string& fault) {
-    CudaDevice device;  // opened first: building trees is slow and useless without a device
-    if (!cuda::open_device(device, fault)) {
-        return std::nullopt;
-    }
+TreeBodies cuda::tree_bodies_of(std::span<const Mesh* const> meshes) {
     TreeBodies bodies;
     for (const Mesh* mesh : meshes) {
         const bool is_usable = has_usable_triangles(*mesh);
@@ -301,7 +277,17 @@ std::optional<CudaEngine> CudaEngine::create(std::span<const Mesh* const> meshes
         bodies.tree_levels =
             std::max(bodies.tree_levels, bodies.trees.back().depth - (is_usable ? 1U : 0U));
     }
-    return Parts::engine_over(bodies, capacities, options, fault);
+    return bodies;
+}
+
+std::optional<CudaEngine> CudaEngine::create(std::span<const Mesh* const> meshes,
+                                             const Capacities& capacities,
+                                             const CudaOptions& options, std::string& fault) {
+    CudaDevice device;  // opened first: building trees is slow and useless without a device
+    if (!cuda::open_device(device, fault)) {
+        return std::nullopt;
+    }
+    return Parts::engine_over(tree_bodies_of(meshes), capacities, options, fault);
 }
 
 std::optional<CudaEngine> CudaEngine::Parts::engine_over(const TreeBodies& bodies,

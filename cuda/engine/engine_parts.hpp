@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,9 @@ void close_partition(const Partition& partition) noexcept;
 /// The most groups of a call: Query::group has 16 bits.
 inline constexpr std::uint32_t kGroupsMax = 1U << 16U;
 inline constexpr std::uint16_t kNoGroup = 0xffffU;
+
+/// Builds the trees of an engine's meshes; those of unusable ones are empty.
+[[nodiscard]] TreeBodies tree_bodies_of(std::span<const Mesh* const> meshes);
 
 /// One batch as a graph. Null if it was not captured.
 struct BatchGraph {

@@ -6,6 +6,7 @@
 #include "cuda/engine/device_traversal.cuh"
 #include "cuda/engine/kernels.hpp"
 #include "cuda/engine/launch_kernel.cuh"
+#include "cuda/engine/prepare_query.cuh"
 
 namespace axg::cuda {
 namespace {
@@ -16,26 +17,9 @@ static_assert(kThreads == kSumThreads);
 /// Whether the engine can run the query; if so, fills `prepared`.
 __device__ bool prepare(const DeviceBuffers& b, const Query& q, PreparedQuery& prepared) {
     prepared.group = q.group;
-    if (b.limits.is_stage && q.kind == QueryKind::clearance) {
-        return false;  // the order of its work depends on its findings
-    }
-    if (q.mesh_a >= b.limits.meshes || q.mesh_b >= b.limits.meshes || !usable(q)) {
-        return false;
-    }
-    prepared.a = b.trees[q.mesh_a];
-    prepared.b = b.trees[q.mesh_b];
-    if (prepared.a.node_count == 0 || prepared.b.node_count == 0) {
-        return false;
-    }
-    prepared.pose = q.pose;
-    prepared.inverse = inverse(q.pose);
-    prepared.kind = q.kind;
-    prepared.is_float_only = q.is_float_only;
-    prepared.r_mm = q.r_mm;
-    prepared.wants_list = q.list.size() != 0;
-    set_constants(prepared.c, q, prepared.a.reach_mm, prepared.b.reach_mm);
-    prepared.near_mm = prepared.c.has_margin ? sat::near_limit(q.r_mm) : 0.0F;
-    return true;
+    // The order of the work of a clearance depends on its findings.
+    return !(b.limits.is_stage && q.kind == QueryKind::clearance) &&
+           prepare_query(b.trees, b.limits.meshes, q, prepared);
 }
 
 /// Zeroes the tally of the query and lists its two roots.

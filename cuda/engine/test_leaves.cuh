@@ -16,6 +16,7 @@
 #include <type_traits>
 
 #include "core/collision/lanes_rolled.hpp"
+#include "cuda/engine/clip_leaves.cuh"
 #include "cuda/engine/device_traversal.cuh"
 #include "cuda/engine/kernels.hpp"
 #include "cuda/engine/launch_kernel.cuh"
@@ -26,10 +27,7 @@ namespace {
 constexpr unsigned kWarps = 4, kThreads = kWarps * kWarp, kBlocksPerMultiprocessor = 4;
 
 /// One warp's tile.
-struct Tile {
-    float a[9][kNodeWidth], b[9][kNodeWidth];  // less the common origin
-    float d;                                   // of scale_of
-    std::uint16_t pairs[kLeafPairs];           // place in a, place in b: five bits each
+struct Tile : MovedPair {
     PairEntry at;
     std::uint32_t count;    // of the pairs; 0 if they are not to be tested
     std::uint32_t handled;  // pairs of leaves
@@ -59,87 +57,6 @@ struct Shared {
     std::uint32_t count;  // pairs of leaves of the batch
     bool is_lost;         // the batch exceeded its rows, as last seen by this block
 };
-
-/// Two leaves of one query; `origin` is subtracted from both.
-struct Leaves {
-    const TreeNode& a;
-    const TreeNode& b;
-    const TreeLeaf& leaf_a;
-    const TreeLeaf& leaf_b;
-    float origin[3];
-};
-
-/// One lane's triangle of each leaf: the box of its moved vertices, and for a also its own box.
-struct ClippedLeaf {
-    TightBox tight_a, tight_b;
-    ChildBox box_a;
-    bool near_a = false;       // not apart from the tight box of the whole leaf of b
-    std::uint32_t bits_b = 0;  // triangles of b not apart from that of a, all lanes'
-};
-
-/// Moves both leaves into the tile. Returns the triangles that are not apart from the tight box of
-/// the other leaf. Called by whole warps.
-__device__ ClippedLeaf move_leaves(const PreparedQuery& q, const Leaves& l, Tile& tile) {
-    const unsigned lane = lane_of_thread();
-    const float slack = q.c.tight_slack, none[3] = {0, 0, 0};
-    const MovedCentres to = move_centres<true>(q, l.a.box.c, l.b.box.c, l.origin);
-    ClippedLeaf c;
-    float v[9];
-    c.tight_a = move_triangle(q.c.a_in_b, l.a.box.c, to.a, l.leaf_a, lane, v);
-    for (int k = 0; k < 9; ++k) {
-        tile.a[k][lane] = v[k];
-    }
-    if (lane == 0) {
-        tile.d = leaf_d(q.c.d32, l.a.box);
-    }
-    c.tight_b = move_triangle(q.c.b_in_a, l.b.box.c, to.b, l.leaf_b, lane, nullptr);
-    for (int k = 0; k < 9; ++k) {
-        tile.b[k][lane] = l.leaf_b.v[k][lane] - l.origin[k % 3];
-    }
-    const TightBox whole_a = whole_of(c.tight_a), whole_b = whole_of(c.tight_b);
-    if (apart_from_tight(whole_a, l.b.box.c, l.b.box.h, l.origin, slack) ||
-        apart_from_tight(whole_b, l.a.box.c, l.a.box.h, none, slack)) {
-        return c;
-    }
-    c.box_a = child_box(l.a, lane);
-    const ChildBox box_b = child_box(l.b, lane);
-    c.near_a = lane < l.a.count && !apart_from_tight(whole_b, c.box_a.c, c.box_a.h, none, slack);
-    c.bits_b =
-        ballot(lane < l.b.count && !apart_from_tight(whole_a, box_b.c, box_b.h, l.origin, slack));
-    c.bits_b = ballot(c.near_a) == 0 ? 0 : c.bits_b;
-    return c;
-}
-
-__device__ __forceinline__ float from_lane(float value, unsigned lane) {
-    return __shfl_sync(kAllLanes, value, static_cast<int>(lane));
-}
-
-/// Stores in tile.pairs the pairs of triangles whose tight boxes are not proven apart: one lane per
-/// triangle of a, the triangles of b in turn. Returns their number.
-__device__ std::uint32_t clip(const PreparedQuery& q, const Leaves& l, const ClippedLeaf& c,
-                              Tile& tile) {
-    const unsigned lane = lane_of_thread();
-    const float slack = q.c.tight_slack, none[3] = {0, 0, 0};
-    std::uint32_t count = 0;
-    for (std::uint32_t left = c.bits_b; left != 0; left &= left - 1) {
-        const unsigned j = lowest(left);
-        const ChildBox other = child_box(l.b, j);
-        TightBox tight;
-        for (int k = 0; k < 3; ++k) {
-            tight.low[k] = from_lane(c.tight_b.low[k], j);
-            tight.high[k] = from_lane(c.tight_b.high[k], j);
-        }
-        const bool near = c.near_a &&
-                          !apart_from_tight(c.tight_a, other.c, other.h, l.origin, slack) &&
-                          !apart_from_tight(tight, c.box_a.c, c.box_a.h, none, slack);
-        const std::uint32_t bits = ballot(near);
-        if (near) {
-            tile.pairs[count + rank_in(bits)] = static_cast<std::uint16_t>(lane << 5U | j);
-        }
-        count += static_cast<std::uint32_t>(__popc(bits));
-    }
-    return count;
-}
 
 /// Counts the pairs found. Returns whether they may be tested: neither the query, nor its group,
 /// nor the batch exceeds its limit.
@@ -247,21 +164,6 @@ __device__ std::uint32_t gather(const DeviceBuffers& buffers, Tile& tile, const 
         tile.count = count;
     }
     return rows;
-}
-
-/// Vertices in a lane type: its axis loops are unrolled (float) or loops (lanes::RolledFloat).
-template <class Lane>
-struct LaneVertices {
-    sat::V3<Lane> a[3], b[3];
-};
-template <class Lane>
-__device__ __forceinline__ LaneVertices<Lane> in_lane(const Vertices& v) {
-    LaneVertices<Lane> out;
-    for (int i = 0; i < 3; ++i) {
-        out.a[i] = {{v.a[i].x}, {v.a[i].y}, {v.a[i].z}};
-        out.b[i] = {{v.b[i].x}, {v.b[i].y}, {v.b[i].z}};
-    }
-    return out;
 }
 
 /// Whether the triangles are certified apart. Sets `edges_square` if they are not.
