@@ -172,6 +172,39 @@ std::string describe_worst_case(const std::vector<NamedMeasurement>& all) {
     return text_of(document);
 }
 
+std::string describe_offline(const OfflineMeasurement& m) {
+    Json document{{"bench", "offline"},
+                  {"device", m.device.name},
+                  {"multiprocessors", m.device.multiprocessors},
+                  {"device_bytes", m.memory.device_bytes()},
+                  {"pinned_bytes", m.memory.pinned_bytes},
+                  {"queries", m.queries},
+                  {"far", m.far},
+                  {"differ", m.differ},
+                  {"again", m.again},
+                  {"cpu_queries_s", m.cpu_queries_s},
+                  {"cpu_pose_s", m.cpu_pose_s}};
+    for (const OfflineLine& line : m.lines) {
+        const OfflineWork& w = line.work;
+        document["lines"].push_back({{"queries", line.queries},
+                                     {"batches", line.batches},
+                                     {"is_posed", line.is_posed},
+                                     {"queries_s", line.queries_s},
+                                     {"device_queries_s", line.device_queries_s},
+                                     {"batches_run", w.batches},
+                                     {"to_device_s", w.to_device_s},
+                                     {"pose_s", w.pose_s},
+                                     {"answer_s", w.answer_s},
+                                     {"to_host_s", w.to_host_s},
+                                     {"fill_s", w.fill_s},
+                                     {"launch_s", w.launch_s},
+                                     {"wait_s", w.wait_s},
+                                     {"check_s", w.check_s},
+                                     {"again_s", w.again_s}});
+    }
+    return text_of(document);
+}
+
 std::string describe_cycles(const CycleMeasurement& m) {
     Json document{{"bench", "cycle"},
                   {"lanes", m.lanes},

@@ -10,6 +10,7 @@
 #include "cuda/bench/measure_worst_case.hpp"
 #include "cuda/engine/cuda_engine.hpp"
 #include "firmware_if/setup/measure_cycle.hpp"
+#include "hil_replay/lab/bench/offline_benchmark.hpp"
 #include "hil_replay/lab/bench/pose_benchmark.hpp"
 
 namespace axg {
@@ -36,6 +37,8 @@ struct NamedMeasurement {
 
 /// One document; several measurements become its columns.
 [[nodiscard]] std::string describe_worst_case(const std::vector<NamedMeasurement>& all);
+
+[[nodiscard]] std::string describe_offline(const OfflineMeasurement& m);
 
 [[nodiscard]] std::string describe_cycles(const CycleMeasurement& m);
 

@@ -11,6 +11,7 @@
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/json_output.hpp"
 #include "hil_replay/lab/bench/cycle_benchmark.hpp"
+#include "hil_replay/lab/bench/offline_benchmark.hpp"
 #include "hil_replay/lab/bench/paper_benchmark.hpp"
 #include "hil_replay/lab/bench/pose_benchmark.hpp"
 #include "hil_replay/lab/bench/scene_benchmark.hpp"
@@ -23,20 +24,25 @@ namespace {
 constexpr std::uint32_t kPosesMax = 2000;  // a series of eight pairs has its own memory
 
 struct BenchOptions {
-    bool paper = false, worst_case = false;
+    bool paper = false, worst_case = false, offline = false;
     PaperBenchmarkOptions experiment;
     SceneBenchmarkOptions scene;
     std::string machine, pose_machine, lanes, axis_data = "computed";
     std::uint32_t tree_levels = 0, launches = 1, stages = 0;
+    std::uint32_t positions = 131'072;
     std::uint32_t pose_passes = 25, step = kPlanStepAsStated;
     bool has_cycles = false;
     std::string engine = "auto";
     JsonOutput json;
 };
 
+std::string usual_machine(const BenchOptions& options) {
+    return options.experiment.data + "/config/machines/paper-trunnion.yaml";
+}
+
 /// Runs --worst-case: a machine's plan on this processor, or batches or a plan on a GPU.
 int run_worst_case(const BenchOptions& options) {
-    const std::string usual = options.experiment.data + "/config/machines/paper-trunnion.yaml";
+    const std::string usual = usual_machine(options);
     if (options.engine != "cpu") {
         const bool is_usual = options.machine.empty() && options.stages != 0;
         return run_worst_case_benchmark({.machine = is_usual ? usual : options.machine,
@@ -57,12 +63,12 @@ int run_worst_case(const BenchOptions& options) {
 
 int benchmark(const BenchOptions& options) {
     const int wanted = (options.paper ? 1 : 0) + (options.worst_case ? 1 : 0) +
-                       (options.scene.folder.empty() ? 0 : 1) +
+                       (options.offline ? 1 : 0) + (options.scene.folder.empty() ? 0 : 1) +
                        (options.pose_machine.empty() ? 0 : 1);
     if (wanted != 1) {
         fmt::print(stderr,
                    "axguard-lab bench: missing argument (expected one of SCENE_DIR, --paper, "
-                   "--worst-case or --pose)\n");
+                   "--worst-case, --offline or --pose)\n");
         return kExitUsage;
     }
     if (options.axis_data == "all" && !options.worst_case) {
@@ -75,6 +81,14 @@ int benchmark(const BenchOptions& options) {
     }
     if (options.worst_case) {
         return run_worst_case(options);
+    }
+    if (options.offline) {
+        return run_offline_benchmark(
+            {.machine = options.machine.empty() ? usual_machine(options) : options.machine,
+             .positions = options.positions,
+             .passes = options.experiment.passes,
+             .margin_mm = options.scene.margin_mm,
+             .json = options.json});
     }
     if (!options.paper) {
         SceneBenchmarkOptions scene = options.scene;
@@ -102,8 +116,14 @@ void add_worst_case_options(const Command& command, BenchOptions& options) {
     command.add_flag("--worst-case", options.worst_case,
                      "measure the worst case, every list full: the longest GPU batch, or with "
                      "--engine cpu the longest cycle of a plan");
-    command.add_input("--machine", options.machine,
-                      "with --worst-case: machine file with the capacities and meshes");
+    command.add_flag("--offline", options.offline,
+                     "measure large batches on a GPU: all pairs at many positions of a machine");
+    command
+        .add_option("--positions", options.positions,
+                    "with --offline: positions spread over the travel")
+        .between(1U, 10'000'000U)
+        .shows_default();
+    command.add_input("--machine", options.machine, "with --worst-case or --offline: machine file");
     command
         .add_option("--step", options.step,
                     "with --worst-case --engine cpu: plan to measure; 3 = plan of the machine file")

@@ -10,6 +10,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@
 #include "core/collision/cpu_engine.hpp"
 #include "core/machine/kinematics.hpp"
 #include "cuda/engine/cuda_engine.hpp"
+#include "cuda/offline/offline_engine.hpp"
 #include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/json_output.hpp"
@@ -55,6 +57,44 @@ LaneSet lanes_of(const std::string& name) {
                             : LaneSet::widest;
 }
 
+/// All that is the same in every query.
+Query usual_query(const SceneFolder& scene, const QueryOptions& options) {
+    Query query;
+    query.kind = kind_of(options.kind);
+    query.r_mm = query.kind == QueryKind::clearance ? options.within_mm : 0.0;
+    query.pose_error_mm = scene.pose_error_mm;
+    return query;
+}
+
+/// Queries every pair of every pose in batches without a limit, untimed. Sets `fault` if the GPU
+/// failed.
+std::vector<Row> run_offline(const SceneFolder& scene, std::span<const Mesh* const> meshes,
+                             const Capacities& capacities, const QueryOptions& options,
+                             std::string& runs_on, std::string& fault) {
+    std::optional<OfflineEngine> engine =
+        OfflineEngine::create(meshes, capacities, {}, {}, {}, fault);
+    if (!engine) {
+        return {};
+    }
+    runs_on = engine->device().name;
+    std::vector<Query> queries(scene.poses.size() * scene.pairs.size(),
+                               usual_query(scene, options));
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+        const SceneFolder::Pair& pair = scene.pairs[i % scene.pairs.size()];
+        const std::size_t pose = i / scene.pairs.size();
+        queries[i].mesh_a = static_cast<std::uint32_t>(pair.a);
+        queries[i].mesh_b = static_cast<std::uint32_t>(pair.b);
+        queries[i].pose = relative_pose(scene.at(pose, pair.a), scene.at(pose, pair.b));
+    }
+    std::vector<QueryResult> results(queries.size());
+    engine->run(queries, results);
+    fault = engine->fault() != nullptr ? engine->fault() : "";
+    std::vector<Row> rows(results.size());
+    std::transform(results.begin(), results.end(), rows.begin(),
+                   [](const QueryResult& result) { return Row{result}; });
+    return rows;
+}
+
 /// Queries every pair of every pose `passes` times; every pass gives the same results. Stores
 /// the least times. Each time covers exactly one query: relative pose, query, result.
 std::vector<Row> run_all(const SceneFolder& scene, const Engine& engine,
@@ -62,10 +102,7 @@ std::vector<Row> run_all(const SceneFolder& scene, const Engine& engine,
     using Clock = std::chrono::steady_clock;
     std::vector<Row> rows(scene.poses.size() * scene.pairs.size());
     cycle_us.assign(scene.poses.size(), std::numeric_limits<double>::infinity());
-    Query query;
-    query.kind = kind_of(options.kind);
-    query.r_mm = query.kind == QueryKind::clearance ? options.within_mm : 0.0;
-    query.pose_error_mm = scene.pose_error_mm;
+    Query query = usual_query(scene, options);
     for (unsigned pass = 0; pass < (options.time ? options.passes : 1U); ++pass) {
         for (std::size_t pose = 0; pose < scene.poses.size(); ++pose) {
             double cycle = 0;
@@ -195,26 +232,34 @@ int query_scene(const QueryOptions& options) {
         meshes.push_back(&mesh);
     }
     const bool on_gpu = options.engine == "cuda";
+    // Queries for contact without times run in large batches.
+    const bool is_offline = on_gpu && options.kind == "hit" && !options.time;
     std::string fault = std::string(kNoLaneSet);
     constexpr Capacities kCapacities;
     // One query at a time leaves room for every pair of triangles that may set a clearance.
     std::optional<CudaEngine> gpu =
-        on_gpu ? CudaEngine::create(meshes, kCapacities,
-                                    {.queries_max = 1, .candidates = kCapacities.triangle_pairs},
-                                    fault)
-               : std::nullopt;
+        on_gpu && !is_offline
+            ? CudaEngine::create(meshes, kCapacities,
+                                 {.queries_max = 1, .candidates = kCapacities.triangle_pairs},
+                                 fault)
+            : std::nullopt;
     // The containment test always needs the CPU engine.
     std::optional<CpuEngine> cpu = CpuEngine::create(meshes, kCapacities, lanes_of(options.lanes));
-    if ((on_gpu && !gpu) || !cpu) {
+    if ((on_gpu && !is_offline && !gpu) || !cpu) {
         fmt::print(stderr, "axguard-lab query: {}\n", fault);
-        return on_gpu && !gpu ? kExitGpu : kExitUnfit;
+        return on_gpu && !is_offline && !gpu ? kExitGpu : kExitUnfit;
     }
-    const std::string runs_on = gpu ? gpu->device().name : std::string(cpu->lanes());
+    std::string runs_on = gpu ? gpu->device().name : std::string(cpu->lanes());
     std::vector<double> cycle_us;
+    fault.clear();
     const std::vector<Row> rows =
-        run_all(scene, gpu ? gpu->engine() : cpu->engine(), options, cycle_us);
+        is_offline ? run_offline(scene, meshes, kCapacities, options, runs_on, fault)
+                   : run_all(scene, gpu ? gpu->engine() : cpu->engine(), options, cycle_us);
     if (gpu && gpu->fault() != nullptr) {
-        fmt::print(stderr, "axguard-lab query: {}\n", gpu->fault());
+        fault = gpu->fault();
+    }
+    if (!fault.empty()) {
+        fmt::print(stderr, "axguard-lab query: {}\n", fault);
         return kExitGpu;
     }
     const std::optional<std::vector<bool>> contained = find_contained(scene, *cpu, rows);
