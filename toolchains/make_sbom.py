@@ -17,7 +17,8 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-TARGETS = ("axguard", "axguard-hal", "axguard-lab", "axguardd", "axguard_stop.so", "libaxguard.so",
+TARGETS = ("axguard", "axguard-certcheck", "axguard-hal", "axguard-lab", "axguardd",
+           "axguard_stop.so", "libaxguard.so",
            "libaxguard.a")
 # Debian's short names that SPDX spells otherwise.
 SPDX_NAMES = {"Expat": "MIT", "BSD-3-clause": "BSD-3-Clause", "BSD-2-clause": "BSD-2-Clause",

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The pages of man of the three programs, from the tables of docs/reference/commands.md, which a
+"""The pages of man of the programs, from the tables of docs/reference/commands.md, which a
 test compares with --help. No program runs, so a cross build has them too.
 
 Example: toolchains/man_pages.py 0.1.0 docs/reference/commands.md build/host-package/packaged"""
@@ -9,6 +9,7 @@ import re
 import sys
 
 PURPOSES = {"axguard": "check machines, simulate programs and replay traces offline",
+            "axguard-certcheck": "check a certificate of a whole program, without axguard",
             "axguardd": "guard a machine tool on a CAN bus",
             "axguard-lab": "measure engines and methods of axguard"}
 SHARED = "options of several commands"
@@ -66,14 +67,16 @@ def exit_codes(page):
 def manual(program, version, page):
     parts = parts_of(page)
     shared = rows_of(parts[SHARED])
-    names = [name for name in parts if name.split(" ")[0] == program and " " in name]
+    names = [name for name in parts if name.split(" ")[0] == program]
+    is_command = names == [program]  # a program without commands of its own
     if not names:
         sys.exit(f"man_pages.py: no command of {program} in the page")
+    word = "" if is_command else ".I command\n"
     others = ", ".join(f".BR {name} (1)" for name in PURPOSES if name != program)
     text = (f'.TH {plain(program.upper())} 1 "" "axguard {version}" "axguard"\n'
             f".SH NAME\n{plain(program)} \\- {plain(PURPOSES[program])}\n"
-            f".SH SYNOPSIS\n.B {plain(program)}\n.I command\n[options]\n.PP\n"
-            f".B {plain(program)}\n.I command\n.B \\-\\-help\n"
+            f".SH SYNOPSIS\n.B {plain(program)}\n{word}[options]\n.PP\n"
+            f".B {plain(program)}\n{word}.B \\-\\-help\n"
             ".SH DESCRIPTION\nA collision guard for five\\-axis machine tools. It complements a "
             "wired emergency stop and never replaces it.\n.SH COMMANDS\n")
     text += "".join(command(name, parts[name], shared) for name in names)

@@ -7,7 +7,8 @@ set(AXG_INSTALL_DATA ${CMAKE_INSTALL_DATADIR}/axguard)
 
 install(FILES firmware_if/axguard.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
         COMPONENT libaxguard-dev)
-install(TARGETS axguard RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT axguard)
+install(TARGETS axguard axguard-certcheck RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
+        COMPONENT axguard)
 install(TARGETS axguard-lab RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT axguard-lab)
 install(DIRECTORY config/machines DESTINATION ${AXG_INSTALL_DATA}/config COMPONENT axguard
         PATTERN README.md EXCLUDE)
@@ -96,6 +97,7 @@ find_package(Python3 COMPONENTS Interpreter)
 set(AXG_PAGES ${PROJECT_BINARY_DIR}/packaged/pages)
 set(manuals axguard axguardd axguard-lab)
 list(TRANSFORM manuals REPLACE "(.+)" "${PROJECT_BINARY_DIR}/packaged/\\1.1" OUTPUT_VARIABLE pages)
+list(APPEND pages ${PROJECT_BINARY_DIR}/packaged/axguard-certcheck.1)  # of the package axguard
 file(GLOB_RECURSE sources CONFIGURE_DEPENDS docs/*)
 add_custom_command(OUTPUT ${pages} ${PROJECT_BINARY_DIR}/packaged/changelog ${AXG_PAGES}/README.md
   DEPENDS toolchains/man_pages.py toolchains/install_pages.py README.md CHANGELOG.md ${sources}
@@ -108,6 +110,8 @@ foreach(name IN LISTS manuals)
   install(FILES ${PROJECT_BINARY_DIR}/packaged/${name}.1
           DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT ${name})
 endforeach()
+install(FILES ${PROJECT_BINARY_DIR}/packaged/axguard-certcheck.1
+        DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT axguard)
 # A shell reads these when it first completes a word of the program, which then prints the rest: a
 # cross build cannot run it.
 foreach(name IN LISTS manuals)
@@ -127,8 +131,8 @@ endforeach()
 install(DIRECTORY ${AXG_PAGES}/ DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/axguard-doc/pages
         COMPONENT axguard-doc)
 add_custom_target(packaged_pages DEPENDS ${pages})
-add_custom_target(packaged DEPENDS axguard axguard-lab axguardd axg_c axg_firmware_if_board
-  ${AXG_ARCHIVE})
+add_custom_target(packaged DEPENDS axguard axguard-certcheck axguard-lab axguardd axg_c
+  axg_firmware_if_board ${AXG_ARCHIVE})
 add_dependencies(packaged packaged_pages)
 if(TARGET axguard-hal)
   # Types of the pins from the sources, meanings from the page. Of each build: `cmake --install`

@@ -46,6 +46,9 @@ NOT_IN_CORE = {
 # Operating system headers of the loaders, which open files without following links out of a folder.
 OPENING_FILES = {"fcntl.h", "unistd.h", "sys/stat.h", "sys/types.h", "sys/syscall.h",
                  "linux/openat2.h"}
+# The judge of certificates shares no code with what writes them: its own headers and the standard
+# library's alone; and no other room includes it.
+CERTCHECK = "hil_replay/certcheck/"
 # Firmware compiles this room for a processor without any of the rest.
 BOARD = "firmware_if/board/"
 BOARD_HEADERS = {"stdbool.h", "stddef.h", "stdint.h"}
@@ -79,6 +82,11 @@ def fault_of(name, path, quoted):
     other = path.split("/")[0]
     if name.startswith(BOARD) and not (path in BOARD_HEADERS or path.startswith(BOARD)):
         return f"{BOARD} includes nothing but itself and {', '.join(sorted(BOARD_HEADERS))}"
+    if name.startswith(CERTCHECK) and not path.startswith(CERTCHECK):
+        if quoted or "/" in path or path.endswith(".h"):
+            return f"{CERTCHECK} includes nothing but itself and the standard library"
+    if path.startswith(CERTCHECK) and not name.startswith((CERTCHECK, "tests/")):
+        return f"{CERTCHECK} is no part of what it judges: run the program"
     if other in FOLDERS and "/" in path:
         if not quoted:
             return "own headers are included with quotes"

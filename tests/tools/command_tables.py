@@ -13,7 +13,7 @@ import sys
 
 from made_parts import table, with_parts
 
-PROGRAMS = ("axguard", "axguardd", "axguard-lab")
+PROGRAMS = ("axguard", "axguardd", "axguard-lab", "axguard-certcheck")
 KINDS = {"TEXT": "text", "INT": "integer", "UINT": "integer", "FLOAT": "number"}
 COMMANDS_TO_SHARE = 3  # an option of so many commands stands in the shared table
 HELP_COLUMN = 30
@@ -79,11 +79,12 @@ def commands_of(build):
             return subprocess.run([path, *words, "--help"], text=True, capture_output=True,
                                   check=True).stdout
         top = help_of()
-        for name in re.findall(r"^  ([a-z][a-z-]*)\s", top, re.M):
-            text = help_of(name)
+        has_commands = "SUBCOMMAND" in top
+        for name in re.findall(r"^  ([a-z][a-z-]*)\s", top, re.M) if has_commands else [""]:
+            text = help_of(name) if name else top
             example = re.match(r"Example:\n  (.+)\n", text).group(1)
             purpose = re.search(r"\n\n(.+)\nUsage:", text).group(1)
-            commands[f"{program} {name}"] = (example, purpose, list(options_of(text)))
+            commands[f"{program} {name}".rstrip()] = (example, purpose, list(options_of(text)))
     return commands
 
 
