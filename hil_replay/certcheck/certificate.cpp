@@ -25,7 +25,7 @@ Certificate::Certificate(const Model& model, Sections& sections, const Digest& m
 void Certificate::read_head(ByteReader in, const Model& model) {
     in.require(in.number<std::uint32_t>() == 1, "the format is not 1");
     version = in.text();
-    if ((in.number<std::uint8_t>() == 0) != model.is_independent) {
+    if ((in.within<std::uint8_t>(0, 1, "no such promise") == 0) != model.is_independent) {
         throw Refusal{10, in.place() + ": the promise is not the model's"};
     }
     is_partial = in.within<std::uint8_t>(0, 1, "partial: expected 0 or 1") == 1;

@@ -43,7 +43,8 @@ std::string claims_of(const Model& model, const Certificate& claim, const Tally&
         text += axis_line(model.axes[i], claim.delta[i], claim.following[i]);
     }
     text += "path: " + std::to_string(claim.segments()) + " segments in " +
-            std::to_string(claim.runs()) + " runs; " + std::to_string(tally.holes.size()) +
+            std::to_string(claim.runs()) + " runs; " +
+            std::to_string(std::ranges::count(tally.is_hole, true)) +
             " of them with a hole, of which nothing is claimed\n";
     text += "pairs: " + std::to_string(model.tasks.size()) + ", with " +
             std::to_string(tally.boxes) + " boxes; containment at " + std::to_string(tally.places) +
@@ -71,22 +72,22 @@ Outcome check_certificate(const NamedBytes& model_file, const NamedBytes& certif
         Sections sections(certificate_file.name, certificate_file.bytes);
         const Certificate claim(model, sections, sha256(model_file.bytes));
         Tally tally;
+        tally.is_hole.resize(claim.segments());
         std::map<std::uint32_t, Parts> parts;
         for (std::size_t i = 0; i < model.tasks.size(); ++i) {
             TaskCheck(model, claim, i).run(sections.open("PAIR"), parts, tally);
         }
         sections.end();
-        std::ranges::sort(tally.holes);
-        tally.holes.erase(std::ranges::unique(tally.holes).begin(), tally.holes.end());
+        const auto holes = std::ranges::count(tally.is_hole, true);
         std::string text = certificate_file.name + ": proven" +
-                           (tally.holes.empty() ? "" : ", except for its holes") + "\n" +
+                           (holes == 0 ? "" : ", except for its holes") + "\n" +
                            claims_of(model, claim, tally);
         if (positions.name.empty()) {
             return {0, text};
         }
         const LookUp found =
             look_up(positions.name, {positions.bytes.begin(), positions.bytes.end()}, model, claim,
-                    tally.holes);
+                    tally.is_hole);
         text += positions.name + ": " + std::to_string(found.positions) + " positions, " +
                 std::to_string(found.outside) + " outside of the tube";
         text += found.outside == 0

@@ -68,7 +68,7 @@ void TaskCheck::check_piece(std::uint64_t first, std::uint64_t last, Tally& tall
                 refuse(segment, "a hole, and the certificate is not marked as partial");
             }
             for (std::uint64_t i = segment; i < (at + parts) / kParts; ++i) {
-                tally.holes.push_back(i);
+                tally.is_hole[i] = true;
             }
         } else {
             const AxisBox box = certificate_.tube(at, at + parts);

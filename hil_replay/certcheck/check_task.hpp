@@ -13,7 +13,7 @@ namespace axg::certcheck {
 
 struct Tally {
     std::uint64_t boxes = 0, places = 0;  // places: containment judged
-    std::vector<std::uint64_t> holes;     // segments of holes, once for each task
+    std::vector<bool> is_hole;            // of each segment, for any task
 };
 
 class TaskCheck {

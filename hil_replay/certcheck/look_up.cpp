@@ -39,7 +39,7 @@ bool contains(const AxisBox& box, const std::vector<double>& units) {
 }  // namespace
 
 LookUp look_up(const std::string& name, const std::string& table, const Model& model,
-               const Certificate& certificate, const std::vector<std::uint64_t>& holes) {
+               const Certificate& certificate, const std::vector<bool>& is_hole) {
     std::istringstream lines(table);
     std::string line;
     std::getline(lines, line);
@@ -53,7 +53,7 @@ LookUp look_up(const std::string& name, const std::string& table, const Model& m
     }
     std::vector<AxisBox> tubes;
     for (std::uint64_t i = 0; i < certificate.segments(); ++i) {
-        if (!std::ranges::binary_search(holes, i)) {
+        if (!is_hole[i]) {
             tubes.push_back(certificate.tube(i * kParts, (i + 1) * kParts));
         }
     }

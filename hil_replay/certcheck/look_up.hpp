@@ -15,10 +15,8 @@ struct LookUp {
 };
 
 /// Looks each position up in the tubes of segments that are in no hole.
-/// @param holes segments
 /// @throws Refusal 12 for a table that does not name every axis, or has no number for one
 [[nodiscard]] LookUp look_up(const std::string& name, const std::string& table, const Model& model,
-                             const Certificate& certificate,
-                             const std::vector<std::uint64_t>& holes);
+                             const Certificate& certificate, const std::vector<bool>& is_hole);
 
 }  // namespace axg::certcheck

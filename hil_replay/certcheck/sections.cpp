@@ -5,6 +5,9 @@
 
 namespace axg::certcheck {
 
+// More than all pairs of 32 bodies with 64 tools.
+constexpr std::size_t kSectionsMax = 1U << 16;
+
 Sections::Sections(const std::string& file, std::span<const std::uint8_t> bytes) : file_(file) {
     ByteReader all(file, bytes, 0);
     Digest sum{};
@@ -21,6 +24,7 @@ Sections::Sections(const std::string& file, std::span<const std::uint8_t> bytes)
         const std::string name = file + ": " + letters;
         const std::size_t offset = bytes.size() - all.left();
         const auto body = all.take(length);
+        all.require(sections_.size() < kSectionsMax, "too many sections");
         sections_.push_back({letters, ByteReader(name, body, offset)});
         if (letters == "DONE") {
             all.require(length == sum.size(), "DONE has 32 bytes");

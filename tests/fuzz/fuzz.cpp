@@ -21,6 +21,7 @@ constexpr std::array kTargets{
     Target{"black_box", &axg::fuzz::black_box},
     Target{"board", &axg::fuzz::board},
     Target{"candump", &axg::fuzz::candump},
+    Target{"certcheck", &axg::fuzz::certcheck},
     Target{"compiled", &axg::fuzz::compiled},
     Target{"dbc", &axg::fuzz::dbc},
     Target{"eds", &axg::fuzz::eds},

@@ -11,6 +11,7 @@ namespace axg::fuzz {
 [[nodiscard]] int black_box(const std::uint8_t* data, std::size_t size);
 [[nodiscard]] int board(const std::uint8_t* data, std::size_t size);
 [[nodiscard]] int candump(const std::uint8_t* data, std::size_t size);
+[[nodiscard]] int certcheck(const std::uint8_t* data, std::size_t size);
 [[nodiscard]] int compiled(const std::uint8_t* data, std::size_t size);
 [[nodiscard]] int dbc(const std::uint8_t* data, std::size_t size);
 [[nodiscard]] int eds(const std::uint8_t* data, std::size_t size);

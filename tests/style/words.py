@@ -14,7 +14,7 @@ import sys
 
 from sources import finish, read_text, tracked_files
 
-# Pages, most words of all of them: a limit against growth. The first four sum to 53,540.
+# Pages, most words of all of them: a limit against growth. The first four sum to 53,663.
 SHELVES = {
     "guide": (["README.md", "docs/guide/*"], 10_618),
     "theory": (["docs/theory/*"], 14_075),
