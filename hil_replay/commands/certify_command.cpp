@@ -65,6 +65,9 @@ std::string arguments_text(const CertifyArguments& arguments, const GcodeResult&
     for (const std::string& word : gcode.ignored) {
         out += "ignored = " + word + '\n';
     }
+    if (!reading.subroutines.empty()) {
+        out += "subroutines = " + hex_of(sha256_of(reading.subroutines)) + '\n';
+    }
     return out + read_as_text(reading.read_as) + '\n';
 }
 

@@ -157,6 +157,7 @@ class Reading {
                 const std::vector<std::string_view> more = lines_of(kept, first_return);
                 file_starts_.push_back(lines_.size());
                 sub_names_.push_back(name);
+                result_.subroutines += name + '\n' + kept;
                 lines_.insert(lines_.end(), more.begin(), more.end());
                 result_.read_as.push_back("subroutine " + printable_line(folder + "/" + name));
                 return true;

@@ -52,8 +52,9 @@ struct IgnoredWord {
 };
 
 struct GcodeResult {
-    std::string text;  // of the program, if read from a file
-    Program program;   // usable only without faults
+    std::string text;         // of the program, if read from a file
+    std::string subroutines;  // name and text of each file that was read besides
+    Program program;          // usable only without faults
     std::vector<ProgramFault> faults;
     bool has_more_faults = false;
     std::vector<IgnoredWord> ignored;
