@@ -6,13 +6,11 @@
 namespace axg::certcheck {
 namespace {
 
-BoxTree::Box box_of(const Triangle* first, std::uint32_t count) {
-    constexpr double kFar = 1e300;
-    BoxTree::Box box{{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
+Vector box_of(const Triangle* first, std::uint32_t count) {
+    Vector box{{first[0][0], first[0][1], first[0][2]}};
     for (std::uint32_t i = 0; i < 9 * count; ++i) {
         const double value = first[i / 9][i % 9];
-        box.low[i % 3] = std::min(box.low[i % 3], value);
-        box.high[i % 3] = std::max(box.high[i % 3], value);
+        box[i % 3] = {std::min(box[i % 3].low, value), std::max(box[i % 3].high, value)};
     }
     return box;
 }
@@ -29,13 +27,13 @@ BoxTree::BoxTree(std::vector<Triangle> triangles) : triangles_(std::move(triangl
         const TreeNode node = open.back();
         open.pop_back();
         Triangle* first = triangles_.data() + node.first;
-        const Box& box = boxes_[node.index] = box_of(first, node.count);
+        const Vector& box = boxes_[node.index] = box_of(first, node.count);
         if (node.count == 1) {
             continue;
         }
         std::size_t widest = 0;
         for (std::size_t i = 1; i < 3; ++i) {
-            if (box.high[i] - box.low[i] > box.high[widest] - box.low[widest]) {
+            if (box[i].high - box[i].low > box[widest].high - box[widest].low) {
                 widest = i;
             }
         }

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "hil_replay/certcheck/interval.hpp"
+
 namespace axg::certcheck {
 
 using Triangle = std::array<float, 9>;  // corners a, b, c
@@ -23,10 +25,6 @@ struct TreeNode {
 
 class BoxTree {
   public:
-    struct Box {
-        std::array<double, 3> low, high;
-    };
-
     BoxTree() = default;
     explicit BoxTree(std::vector<Triangle> triangles);
 
@@ -34,12 +32,12 @@ class BoxTree {
     [[nodiscard]] TreeNode top() const {
         return {0, 0, static_cast<std::uint32_t>(triangles_.size())};
     }
-    [[nodiscard]] const Box& box(TreeNode node) const { return boxes_[node.index]; }
+    [[nodiscard]] const Vector& box(TreeNode node) const { return boxes_[node.index]; }
     [[nodiscard]] const Triangle& triangle(TreeNode leaf) const { return triangles_[leaf.first]; }
 
   private:
     std::vector<Triangle> triangles_;  // in the order of the leaves
-    std::vector<Box> boxes_;
+    std::vector<Vector> boxes_;        // exact bounds
 };
 
 }  // namespace axg::certcheck

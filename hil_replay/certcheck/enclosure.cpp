@@ -31,13 +31,12 @@ Vector corner_of(const Triangle& triangle, std::size_t i) {
     return {{triangle[3 * i], triangle[3 * i + 1], triangle[3 * i + 2]}};
 }
 
-bool misses(const BoxTree::Box& box, const Vector& point, const Vector& ray) {
+bool misses(const Vector& box, const Vector& point, const Vector& ray) {
     double from = 0, to = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < 3; ++i) {
-        const Interval one = (Interval(box.low[i]) - point[i]) / ray[i];
-        const Interval other = (Interval(box.high[i]) - point[i]) / ray[i];
-        from = std::max(from, std::min(one.low, other.low));
-        to = std::min(to, std::max(one.high, other.high));
+        const Interval along = (box[i] - point[i]) / ray[i];
+        from = std::max(from, along.low);
+        to = std::min(to, along.high);
     }
     return from > to;
 }

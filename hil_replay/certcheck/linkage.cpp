@@ -83,12 +83,12 @@ void Linkage::place(std::span<const double> position) {
 /// a distance from a line is convex, or by the ball around its middle.
 double Linkage::distance_max(const Joint& joint, std::size_t side) const {
     const Surface& surface = *surface_[side];
-    const BoxTree::Box& box = surface.tree.box(surface.tree.top());
+    const Vector& box = surface.tree.box(surface.tree.top());
     double by_box = 0;
     for (unsigned corner = 0; corner < 8; ++corner) {
         Vector at;
         for (unsigned i = 0; i < 3; ++i) {
-            at[i] = (corner >> i & 1U) != 0 ? box.high[i] : box.low[i];
+            at[i] = (corner >> i & 1U) != 0 ? box[i].high : box[i].low;
         }
         by_box = std::max(by_box, distance(placed(pose_[side], at), joint.point, joint.along));
     }

@@ -77,9 +77,9 @@ Surface surface_of(std::string name, std::vector<Triangle> corners) {
     if (surface.tree.triangles().empty()) {
         return surface;
     }
-    const BoxTree::Box& box = surface.tree.box(surface.tree.top());
+    const Vector& box = surface.tree.box(surface.tree.top());
     for (std::size_t i = 0; i < 3; ++i) {  // any point will do, so its rounding does no harm
-        surface.middle[i] = (box.low[i] + box.high[i]) / 2;
+        surface.middle[i] = (box[i].low + box[i].high) / 2;
     }
     for (const Triangle& triangle : surface.tree.triangles()) {
         for (std::size_t i = 0; i < 9; i += 3) {

@@ -62,8 +62,8 @@ TEST(CertcheckTree, EachNodeHoldsItsChildrenAndEachTriangleHasOneLeaf) {
             open.pop_back();
             for (std::uint32_t i = 0; i < 9 * node.count; ++i) {
                 const float value = tree.triangles()[node.first + i / 9][i % 9];
-                EXPECT_TRUE(tree.box(node).low[i % 3] <= value &&
-                            value <= tree.box(node).high[i % 3]);
+                EXPECT_TRUE(tree.box(node)[i % 3].low <= value &&
+                            value <= tree.box(node)[i % 3].high);
             }
             if (node.count == 1) {
                 leaves.push_back(tree.triangle(node));
