@@ -18,8 +18,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 TARGETS = ("axguard", "axguard-certcheck", "axguard-hal", "axguard-lab", "axguardd",
-           "axguard_stop.so", "libaxguard.so",
-           "libaxguard.a")
+           "axguard_stop.so", "libaxguard.so", "libaxguard.a")
 # Debian's short names that SPDX spells otherwise.
 SPDX_NAMES = {"Expat": "MIT", "BSD-3-clause": "BSD-3-Clause", "BSD-2-clause": "BSD-2-Clause",
               "MPL-2": "MPL-2.0", "zlib": "Zlib", "zlib/libpng": "Zlib", "GPL-3": "GPL-3.0-only",

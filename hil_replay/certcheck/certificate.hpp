@@ -3,6 +3,7 @@
 // by the checker.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -37,6 +38,10 @@ class Certificate {
     }
     [[nodiscard]] std::span<const std::int64_t> node(std::uint64_t index) const {
         return std::span(nodes_).subspan(index * axes_, axes_);
+    }
+    /// Segments whose run has this place in the list of tools; -1: none, kEveryTool: all count.
+    [[nodiscard]] std::uint64_t segments_with(int tool) const {
+        return static_cast<std::uint64_t>(std::ranges::count(tool_, tool));
     }
     /// "run 1, segment 17 (line 42)".
     [[nodiscard]] std::string place(std::uint64_t segment) const;

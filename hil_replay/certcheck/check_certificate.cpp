@@ -32,7 +32,40 @@ std::string axis_line(const Axis& axis, std::int64_t delta, std::int64_t followi
            number(static_cast<double>(following) * unit) + (axis.is_rotary ? " deg\n" : " mm\n");
 }
 
-std::string claims_of(const Model& model, const Certificate& claim, const Tally& tally) {
+/// What a reader must compare with the machine and the program: without a tool no pair with one is
+/// judged, and nothing can be inside of an open part.
+std::string extent_of(const Model& model, const Certificate& claim, const Tally& tally,
+                      const std::map<std::uint32_t, Parts>& parts) {
+    std::string text = "path: " + std::to_string(claim.segments()) + " segments in " +
+                       std::to_string(claim.runs()) + " runs; " +
+                       std::to_string(std::ranges::count(tally.is_hole, true)) +
+                       " of them with a hole, of which nothing is claimed\n";
+    const auto tool = [&](const std::string& name, int place) {
+        if (const std::uint64_t segments = claim.segments_with(place); segments > 0) {
+            text += "  " + name + ": " + std::to_string(segments) + " segments\n";
+        }
+    };
+    for (std::size_t i = 0; i < model.tools.size(); ++i) {
+        tool(model.tools[i], static_cast<int>(i));
+    }
+    tool("every tool", kEveryTool);
+    tool("no tool, and no pair with one is judged", -1);
+    double margin = std::numeric_limits<double>::infinity();
+    for (const Task& task : model.tasks) {
+        margin = std::min(margin, task.margin);
+    }
+    std::size_t open = 0;
+    for (const auto& [surface, of_surface] : parts) {
+        open += of_surface.open_count;
+    }
+    return text + "pairs: " + std::to_string(model.tasks.size()) + ", with " +
+           std::to_string(tally.boxes) + " boxes; margin " + number(margin) +
+           " mm or more; containment at " + std::to_string(tally.places) + " places; " +
+           std::to_string(open) + " open parts, which nothing can be inside of\n";
+}
+
+std::string claims_of(const Model& model, const Certificate& claim, const Tally& tally,
+                      const std::map<std::uint32_t, Parts>& parts) {
     std::string text;
     for (const auto& [name, sum] : claim.references) {
         text += "  " + std::string(name) + std::string(10 - name.size(), ' ') + hex(sum) + "\n";
@@ -42,13 +75,7 @@ std::string claims_of(const Model& model, const Certificate& claim, const Tally&
     for (std::size_t i = 0; i < model.axes.size(); ++i) {
         text += axis_line(model.axes[i], claim.delta[i], claim.following[i]);
     }
-    text += "path: " + std::to_string(claim.segments()) + " segments in " +
-            std::to_string(claim.runs()) + " runs; " +
-            std::to_string(std::ranges::count(tally.is_hole, true)) +
-            " of them with a hole, of which nothing is claimed\n";
-    text += "pairs: " + std::to_string(model.tasks.size()) + ", with " +
-            std::to_string(tally.boxes) + " boxes; containment at " + std::to_string(tally.places) +
-            " places\n";
+    text += extent_of(model, claim, tally, parts);
     text += "excluded pairs: " + std::to_string(model.exclusions.size()) + "\n";
     for (std::size_t i = 0; i < std::min(model.exclusions.size(), kExclusionsShown); ++i) {
         const Exclusion& pair = model.exclusions[i];
@@ -81,7 +108,7 @@ Outcome check_certificate(const NamedBytes& model_file, const NamedBytes& certif
         const auto holes = std::ranges::count(tally.is_hole, true);
         std::string text = certificate_file.name + ": proven" +
                            (holes == 0 ? "" : ", except for its holes") + "\n" +
-                           claims_of(model, claim, tally);
+                           claims_of(model, claim, tally, parts);
         if (positions.name.empty()) {
             return {0, text};
         }

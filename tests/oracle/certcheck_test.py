@@ -208,6 +208,11 @@ def plain_cases(check):
     expect("a hole", hole, 10, "(arm, head, T7 long), run 0, segment 3 (line 4): a hole")
     hole.partial = 1
     expect("a hole in a partial one", hole, 0, "proven, except for its holes")
+    bare = right.copy()
+    bare.runs = [(-1, 9, 0, 0)]
+    bare.pairs = right.pairs[:1] + [(1, []), (2, [])]
+    expect("no tool", bare, 0, "no tool, and no pair with one is judged: 9 segments")
+    expect("tools", right, 0, "T1 short: 3 segments\n  T7 long: 3 segments\n  every tool: 3")
     near = right.copy()
     near.nodes[3][0] += 70 * toys.MM
     expect("a path in contact", near, 10, "no direction separates")
