@@ -221,6 +221,9 @@ std::optional<OfflineEngine> OfflineEngine::create(
     parts->pairs.assign(pairs.begin(), pairs.end());
     parts->slots.resize(std::clamp(options.batches, 1U, 8U));
     parts->again.reserve(parts->options.queries_max);
+    for (OfflineSlot& slot : parts->slots) {
+        slot.others.reserve(parts->options.queries_max);
+    }
     if (!are_in_range(*parts, meshes.size())) {
         fault = "a pair of the offline engine names a body or surface that is not there";
         return std::nullopt;

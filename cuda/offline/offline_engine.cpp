@@ -49,8 +49,16 @@ std::size_t fill_given(Parts& parts, OfflineSlot& slot, std::span<const Query> q
     auto* const items = reinterpret_cast<GivenItem*>(slot.items);
     for (std::size_t i = 0; i < most; ++i) {
         const Query& q = queries[slot.first + i];
-        items[i] = {q.pose,        q.r_mm,   q.pose_error_mm,
-                    q.mesh_a,      q.mesh_b, q.is_float_only ? 1U : 0U,
+        const bool is_other = q.kind != QueryKind::farther;
+        if (is_other) {
+            slot.others.push_back(static_cast<std::uint32_t>(i));  // within its reserved room
+        }
+        items[i] = {q.pose,
+                    q.r_mm,
+                    q.pose_error_mm,
+                    is_other ? kNoIndex : q.mesh_a,  // the device refuses it at once
+                    q.mesh_b,
+                    q.is_float_only ? 1U : 0U,
                     parts.sequence};
     }
     slot.buffers.count = static_cast<std::uint32_t>(most);
@@ -202,8 +210,7 @@ bool read_answer(const OfflineAnswer& from, std::uint32_t sequence, std::uint32_
 }
 
 /// Checks and reads all answers of a batch; lists those that the CPU engine has to give.
-bool read_answers(Parts& parts, const OfflineSlot& slot, const Call& call,
-                  std::span<QueryResult> results) noexcept {
+bool read_answers(Parts& parts, const OfflineSlot& slot, std::span<QueryResult> results) noexcept {
     const Spent spent(parts.work.check_s);
     parts.again.clear();
     const auto* const answers = reinterpret_cast<const OfflineAnswer*>(
@@ -212,11 +219,11 @@ bool read_answers(Parts& parts, const OfflineSlot& slot, const Call& call,
         if (!read_answer(answers[i], slot.buffers.sequence, i, results[slot.first + i])) {
             return false;
         }
-        if (answers[i].state == kOfflineAgain ||
-            (!call.given.empty() && call.given[slot.first + i].kind != QueryKind::farther)) {
+        if (answers[i].state == kOfflineAgain) {
             parts.again.push_back(i);  // within its reserved room
         }
     }
+    parts.again.insert(parts.again.end(), slot.others.begin(), slot.others.end());
     return true;
 }
 
@@ -247,6 +254,7 @@ bool start(Parts& parts, OfflineSlot& slot, const Call& call, std::size_t at) no
     {
         const Spent spent(parts.work.fill_s);
         slot.first = at;
+        slot.others.clear();
         slot.buffers.sequence = ++parts.sequence;
         const std::size_t most = std::min<std::size_t>(parts.options.queries_max, call.size() - at);
         slot.item_bytes = call.given.empty() ? fill_posed_items(parts, slot, call.posed, most)
@@ -270,7 +278,7 @@ bool finish(Parts& parts, OfflineSlot& slot, const Call& call,
         parts.give_up(why);
         return false;
     }
-    if (!read_answers(parts, slot, call, results)) {
+    if (!read_answers(parts, slot, results)) {
         parts.give_up(kLeftOut);
         return false;
     }
@@ -284,10 +292,8 @@ bool finish(Parts& parts, OfflineSlot& slot, const Call& call,
 /// Runs a call in batches: while one runs, the host fills the next and reads the last.
 void run_call(Parts& parts, const Call& call, std::span<QueryResult> results) noexcept {
     AXG_ASSERT(call.size() == results.size());
-    const bool is_exact = rounds_to_nearest();
-    std::fill(results.begin(), results.end(),
-              QueryResult{.status = is_exact ? QueryStatus::not_run : QueryStatus::bad_rounding});
-    if (!is_exact || parts.fault != nullptr) {
+    if (!rounds_to_nearest()) {
+        std::fill(results.begin(), results.end(), QueryResult{.status = QueryStatus::bad_rounding});
         return;
     }
     std::size_t at = 0, started = 0, finished = 0;
@@ -349,12 +355,14 @@ double OfflineEngine::repeat(std::uint32_t times) noexcept {
     const Clock::time_point start = Clock::now();
     for (std::uint32_t i = 0; i < times; ++i) {
         for (OfflineSlot& slot : parts.slots) {
-            is_good = is_good && slot.item_bytes != 0 && launch(parts, slot);
-            queries += slot.buffers.count;
+            if (slot.item_bytes != 0) {  // it has had a batch
+                is_good = is_good && launch(parts, slot);
+                queries += slot.buffers.count;
+            }
         }
     }
     for (OfflineSlot& slot : parts.slots) {
-        is_good = is_good && wait_for(parts, slot);
+        is_good = is_good && (slot.item_bytes == 0 || wait_for(parts, slot));
     }
     const std::chrono::duration<double> spent = Clock::now() - start;
     if (!is_good) {

@@ -34,6 +34,7 @@ struct OfflineSlot {
     std::byte *items = nullptr, *answers = nullptr;  // pinned: items and positions; sums, answers
     std::size_t item_bytes = 0;                      // of the batch
     std::size_t first = 0;                           // query of the call
+    std::vector<std::uint32_t> others;               // queries of another kind than `farther`
 };
 
 }  // namespace axg::cuda

@@ -9,6 +9,7 @@ namespace axg::cuda {
 namespace {
 
 constexpr unsigned kThreads = 64;
+static_assert(sizeof(OfflinePrepared) % sizeof(uint4) == 0);
 
 /// Fills the query from its item; false: it cannot be posed. Sets the item's batch.
 __device__ bool read_query(const OfflineBuffers& b, std::uint32_t i, Query& q,
@@ -37,16 +38,24 @@ __device__ bool read_query(const OfflineBuffers& b, std::uint32_t i, Query& q,
 
 __global__ void __launch_bounds__(kThreads)
     prepare_offline_kernel(const __grid_constant__ OfflineBuffers b) {
-    const std::uint32_t i = blockIdx.x * kThreads + threadIdx.x;
-    if (i >= b.count) {
-        return;
+    // Through shared memory, so that whole lines go to device memory.
+    __shared__ OfflinePrepared prepared[kThreads];
+    const std::uint32_t first = blockIdx.x * kThreads, i = first + threadIdx.x;
+    if (i < b.count) {
+        OfflinePrepared& to = prepared[threadIdx.x];
+        Query q;
+        std::uint32_t sequence = 0;
+        const bool is_posed = read_query(b, i, q, sequence);
+        to.is_usable = is_posed && prepare_query(b.trees, b.meshes, q, to.q) ? 1 : 0;
+        to.sequence = sequence == b.sequence ? sequence : 0;
     }
-    OfflinePrepared& to = b.prepared[i];
-    Query q;
-    std::uint32_t sequence = 0;
-    const bool is_posed = read_query(b, i, q, sequence);
-    to.is_usable = is_posed && prepare_query(b.trees, b.meshes, q, to.q) ? 1 : 0;
-    to.sequence = sequence == b.sequence ? sequence : 0;
+    __syncthreads();
+    constexpr std::uint32_t kWords = sizeof(OfflinePrepared) / sizeof(uint4);
+    const std::uint32_t count = min(kThreads, b.count - first) * kWords;
+    for (std::uint32_t k = threadIdx.x; k < count; k += kThreads) {
+        reinterpret_cast<uint4*>(b.prepared + first)[k] =
+            reinterpret_cast<const uint4*>(prepared)[k];
+    }
 }
 
 }  // namespace

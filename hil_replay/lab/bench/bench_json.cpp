@@ -183,7 +183,8 @@ std::string describe_offline(const OfflineMeasurement& m) {
                   {"differ", m.differ},
                   {"again", m.again},
                   {"cpu_queries_s", m.cpu_queries_s},
-                  {"cpu_pose_s", m.cpu_pose_s}};
+                  {"cpu_pose_s", m.cpu_pose_s},
+                  {"cycle_queries_s", m.cycle_queries_s}};
     for (const OfflineLine& line : m.lines) {
         const OfflineWork& w = line.work;
         document["lines"].push_back({{"queries", line.queries},
@@ -191,6 +192,8 @@ std::string describe_offline(const OfflineMeasurement& m) {
                                      {"is_posed", line.is_posed},
                                      {"queries_s", line.queries_s},
                                      {"device_queries_s", line.device_queries_s},
+                                     {"p50_us", line.p50_us},
+                                     {"p99_us", line.p99_us},
                                      {"batches_run", w.batches},
                                      {"to_device_s", w.to_device_s},
                                      {"pose_s", w.pose_s},

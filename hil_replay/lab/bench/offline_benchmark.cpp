@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -17,6 +18,7 @@
 #include "firmware_if/setup/surface_list.hpp"
 #include "firmware_if/setup/travel_sample.hpp"
 #include "hil_replay/lab/bench/bench_json.hpp"
+#include "hil_replay/replay/cycle_times.hpp"
 
 namespace axg {
 namespace {
@@ -80,6 +82,45 @@ std::size_t count_differing(std::span<const QueryResult> x, std::span<const Quer
     return differ;
 }
 
+/// Times of single batches, spread over the scene.
+void time_batches(OfflineEngine& engine, const Scene& scene, OfflineLine& line) {
+    constexpr std::size_t kTimed = 400;
+    const std::size_t count = std::min<std::size_t>(line.queries, scene.given.size());
+    std::vector<QueryResult> results(count);
+    std::vector<double> us;
+    for (std::size_t i = 0; i < kTimed; ++i) {
+        const std::size_t first = i * 7919 * count % (scene.given.size() - count + 1);
+        const Clock::time_point start = Clock::now();
+        if (line.is_posed) {
+            engine.run(PosedQueries{std::span(scene.posed).subspan(first, count), scene.positions},
+                       results);
+        } else {
+            engine.run(std::span(scene.given).subspan(first, count), results);
+        }
+        us.push_back(1e6 * seconds_since(start));
+    }
+    const CyclePercentiles all = percentiles_of(std::move(us));
+    line.p50_us = all.p50_us;
+    line.p99_us = all.p99_us;
+}
+
+/// The rate of the cycle's engine over the same queries; 0: it gave up.
+double rate_of_cycles(std::span<const Mesh* const> meshes, const Machine& machine,
+                      const Scene& scene) {
+    std::string fault;
+    std::optional<CudaEngine> engine = CudaEngine::create(
+        meshes, machine.capacities, {.queries_max = 544, .deadline_us = 1'000'000}, fault);
+    std::vector<QueryResult> results(scene.given.size());
+    double least_s = std::numeric_limits<double>::infinity();
+    for (int pass = 0; engine && pass < 3; ++pass) {
+        const Clock::time_point start = Clock::now();
+        engine->run(scene.given, results);
+        least_s = std::min(least_s, seconds_since(start));
+    }
+    return engine && engine->fault() == nullptr ? static_cast<double>(scene.given.size()) / least_s
+                                                : 0;
+}
+
 /// One line; empty after a fault.
 std::optional<OfflineLine> measure_line(std::span<const Mesh* const> meshes,
                                         const Capacities& capacities, const Scene& scene,
@@ -110,6 +151,9 @@ std::optional<OfflineLine> measure_line(std::span<const Mesh* const> meshes,
     const auto count = static_cast<double>(scene.given.size());
     line.work = engine->work();
     line.queries_s = count / each_s[each_s.size() / 2];
+    if (line.batches == 1) {
+        time_batches(*engine, scene, line);
+    }
     line.device_queries_s = engine->repeat(std::max(1U, kRepeated / line.queries));
     out.differ += count_differing(scene.wanted, results);
     out.again = std::max(out.again, line.work.again / passes);
@@ -132,6 +176,10 @@ void print_line(const OfflineLine& line, std::FILE* words) {
         line.device_queries_s, w.to_device_s * each, w.pose_s * each, w.answer_s * each,
         w.to_host_s * each, w.fill_s * each, w.launch_s * each, w.wait_s * each, w.check_s * each,
         w.again_s * each, w.again);
+    if (line.p50_us != 0) {
+        fmt::print(words, "       one batch alone, call to results: p50 {:.1f} us, p99 {:.1f}\n",
+                   line.p50_us, line.p99_us);
+    }
 }
 
 /// The CPU engine's results, and what one core does in a second.
@@ -203,6 +251,9 @@ int run_offline_benchmark(const OfflineBenchmarkOptions& options) {
             }
         }
     }
+    out.cycle_queries_s = rate_of_cycles(meshes, loaded.machine, scene);
+    fmt::print(words, "the cycle's engine in launches of 544: {:.3g} queries a second\n",
+               out.cycle_queries_s);
     fmt::print(words,
                "one core: {:.3g} queries a second, {:.3g} poses; {} of {} results of {} lines "
                "differ; {} queries a pass by the CPU engine\n",

@@ -28,7 +28,9 @@ struct OfflineLine {
     bool is_posed = false;        // by the device; otherwise the host's poses go over the bus
     double queries_s = 0;         // whole calls, with the host's checks: median of the passes
     double device_queries_s = 0;  // bus, poses and answers, without the host's part
-    OfflineWork work;             // of all passes
+    // Of one batch alone, from call to results; 0 where others are under way.
+    double p50_us = 0, p99_us = 0;
+    OfflineWork work;  // of all passes
 };
 
 struct OfflineMeasurement {
@@ -36,8 +38,9 @@ struct OfflineMeasurement {
     CudaMemoryPlan memory;
     std::size_t queries = 0, far = 0, differ = 0;
     std::uint64_t again = 0;
-    double cpu_queries_s = 0;  // one core, CPU engine
-    double cpu_pose_s = 0;     // poses a second that one core makes
+    double cpu_queries_s = 0;    // one core, CPU engine
+    double cpu_pose_s = 0;       // poses a second that one core makes
+    double cycle_queries_s = 0;  // the cycle's engine on this GPU, in launches of 544
     std::vector<OfflineLine> lines;
 };
 

@@ -41,6 +41,14 @@ TEST(BenchCommand, PosesTheBoxesOfAMachineThatProvesNothing) {
     EXPECT_EQ(run_axguard_lab({"bench", "--pose", "no.yaml"}), kExitInput);
 }
 
+TEST(BenchCommand, OfflineNeedsAMachineAndAGpu) {
+    EXPECT_EQ(run_axguard_lab({"bench", "--offline", "--machine", "no.yaml"}), kExitInput);
+    EXPECT_EQ(run_axguard_lab({"bench", "--offline", "--paper"}), kExitUsage);
+    EXPECT_EQ(run_axguard_lab({"bench", "--offline", "--positions", "0"}), kExitUsage);
+    const int code = run_axguard_lab({"bench", "--offline", "--positions", "20", "--passes", "1"});
+    EXPECT_TRUE(code == kExitGpu || code == kExitClean) << code;
+}
+
 TEST(BenchCommand, PaperWritesTheCpuColumnsWithoutAGpu) {
     const fs::path file =
         fs::temp_directory_path() / ("axg-bench-" + std::to_string(::getpid()) + ".json");
