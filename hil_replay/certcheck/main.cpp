@@ -19,6 +19,7 @@ constexpr const char* kHelp =
     "  CERT TEXT REQUIRED          certificate (P.cert)\n\n"
     "Options:\n"
     "  -h,--help                   print this help and exit\n"
+    "  --version                   print the version and exit\n"
     "  --positions TEXT            look positions up in the tube: a CSV file whose head names "
     "every "
     "axis, mm and degrees\n";
@@ -35,6 +36,10 @@ int run(const std::vector<std::string>& words) {
     for (std::size_t i = 0; i < words.size(); ++i) {
         if (words[i] == "-h" || words[i] == "--help") {
             std::cout << kHelp;
+            return 0;
+        }
+        if (words[i] == "--version") {
+            std::cout << "axguard-certcheck " AXG_VERSION "\n";
             return 0;
         }
         if (words[i] == "--positions" && i + 1 < words.size()) {

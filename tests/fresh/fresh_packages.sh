@@ -139,7 +139,7 @@ done
 dpkg --fsys-tarfile /opt/packages/axguardd_*.deb | tar -xO ./etc/axguard/sample.yaml |
     cmp - /etc/axguard/sample.yaml
 axguard check /etc/axguard/sample.yaml
-for program in axguard axguardd axguard-lab; do
+for program in axguard axguard-certcheck axguardd axguard-lab; do
     test -s /usr/share/man/man1/$program.1.gz
     $program --version
 done
