@@ -69,9 +69,9 @@ TEST_F(CertifyCommand, NamesTheLinesThatAreNotClearAndWritesNothing) {
 
 TEST_F(CertifyCommand, NamesTheSubroutineFilesThatItRead) {
     std::filesystem::create_directory(shop.file("subs"));
-    shop.write("main.ngc", "G21 G90 G94 F600\nO<pocket> CALL\nM2\n");
+    (void)shop.write("main.ngc", "G21 G90 G94 F600\nO<pocket> CALL\nM2\n");
     const auto sum_with = [&](const std::string& move) {
-        shop.write("subs/pocket.ngc", "O<pocket> SUB\n" + move + "\nO<pocket> ENDSUB\nM2\n");
+        (void)shop.write("subs/pocket.ngc", "O<pocket> SUB\n" + move + "\nO<pocket> ENDSUB\nM2\n");
         EXPECT_EQ(run(machine + "main.ngc --sub subs -o p.cert"), kExitClean) << out << err;
         const auto read = read_certificate(test::content_of(shop.file("p.cert")));
         return read ? hex_of(read->sources[3].second) : std::string();
