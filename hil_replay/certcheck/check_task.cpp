@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hil_replay/certcheck/check_task.hpp"
 
+#include <utility>
+
 namespace axg::certcheck {
 namespace {
 
@@ -30,7 +32,7 @@ void TaskCheck::refuse(std::uint64_t segment, const std::string& why) const {
 }
 
 void TaskCheck::run(ByteReader in, std::map<std::uint32_t, Parts>& parts, Tally& tally) {
-    in_ = in;
+    in_ = std::move(in);
     in_.require(in_.number<std::uint32_t>() == index_, "the tasks are not in the model's order");
     for (std::size_t side = 0; side < 2; ++side) {
         const std::uint32_t whole = task_.whole[side];

@@ -39,7 +39,7 @@ class BlockProver {
     };
     [[nodiscard]] Question question(const UnitBox& box) const noexcept;
     [[nodiscard]] bool is_far(const Query& query) noexcept;
-    bool prove_box(const UnitBox& box, Question& question, std::string& tree);
+    bool prove_box(const UnitBox& box, Question& asked, std::string& tree);
     bool prove_witness(const Query& query, std::string& tree);
     void prove_range(const SegmentRange& segments);
     bool prove_segment(std::uint64_t segment);

@@ -218,6 +218,27 @@ QueryReport report_of(const SceneFolder& scene, const std::string& runs_on,
     return report;
 }
 
+void print_report(const SceneFolder& scene, const std::string& runs_on, const QueryReport& report,
+                  const QueryOptions& options) {
+    fmt::print(options.json.words(), "{} poses, {} pairs, {}: {} not proven apart{}\n",
+               report.poses, report.pairs, runs_on, report.hits,
+               report.contained == 0
+                   ? ""
+                   : fmt::format(", {} of them with one body inside the other", report.contained));
+    if (scene.pose_error_mm > 0) {
+        fmt::print(options.json.words(),
+                   "matrices are not exactly rigid: every result allows for {:.3g} mm\n",
+                   scene.pose_error_mm);
+    }
+    if (options.time) {
+        fmt::print(options.json.words(),
+                   "us per cycle of {} pairs, minimum of {} passes: median {:.2f}, p99 {:.2f}, max "
+                   "{:.2f}\n",
+                   report.pairs, options.passes, report.cycle_us_median, report.cycle_us_p99,
+                   report.cycle_us_max);
+    }
+}
+
 int query_scene(const QueryOptions& options) {
     SceneFolder scene;
     if (const std::string fault = read_scene_folder(options.folder, scene); !fault.empty()) {
@@ -271,23 +292,7 @@ int query_scene(const QueryOptions& options) {
         return kExitInternal;
     }
     const QueryReport report = report_of(scene, runs_on, rows, *contained, cycle_us, options);
-    fmt::print(options.json.words(), "{} poses, {} pairs, {}: {} not proven apart{}\n",
-               report.poses, report.pairs, runs_on, report.hits,
-               report.contained == 0
-                   ? ""
-                   : fmt::format(", {} of them with one body inside the other", report.contained));
-    if (scene.pose_error_mm > 0) {
-        fmt::print(options.json.words(),
-                   "matrices are not exactly rigid: every result allows for {:.3g} mm\n",
-                   scene.pose_error_mm);
-    }
-    if (options.time) {
-        fmt::print(options.json.words(),
-                   "us per cycle of {} pairs, minimum of {} passes: median {:.2f}, p99 {:.2f}, max "
-                   "{:.2f}\n",
-                   report.pairs, options.passes, report.cycle_us_median, report.cycle_us_p99,
-                   report.cycle_us_max);
-    }
+    print_report(scene, runs_on, report, options);
     return write_json(options.json, describe_queries(report)) ? kExitClean : kExitInternal;
 }
 
