@@ -14,12 +14,12 @@ import sys
 
 from sources import finish, read_text, tracked_files
 
-# Pages, most words of all of them: a limit against growth. The first four sum to 54,057.
+# Pages, most words of all of them: a limit against growth. The first four sum to 54,067.
 SHELVES = {
     "guide": (["README.md", "docs/guide/*"], 10_705),
     "theory": (["docs/theory/*"], 14_097),
     "reference": (["docs/reference/*"], 20_475),
-    "measurements and decisions": (["docs/measurements/*", "docs/decisions/*"], 8_780),
+    "measurements and decisions": (["docs/measurements/*", "docs/decisions/*"], 8_790),
     "rules": (["CONTRIBUTING.md", "docs/glossary.md", "docs/style.md"], 3_760),
 }
 PARAGRAPH_WORDS_MAX = 120
