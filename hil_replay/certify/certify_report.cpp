@@ -79,6 +79,12 @@ void print_certify(const CertifyReport& report, std::FILE* out) {
         fmt::print(out, "... and {} more; all of them: --json=FILE\n",
                    proof.open.size() - kPrinted);
     }
+    if (!report.covers_lower) {
+        fmt::print(out,
+                   "for an override of {} % alone, no lower one: corners are rounded (G64 P, "
+                   "--blend-mm), and by another path at another feed\n",
+                   report.override_percent);
+    }
     if (!report.certificate.empty()) {
         fmt::print(out, "{}: {} bytes, {} boxes, {} queries, {:.1f} s; stops {}{}\n",
                    report.certificate, report.certificate_bytes, proof.boxes, proof.questions,

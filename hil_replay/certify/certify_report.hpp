@@ -17,6 +17,8 @@ struct CertifyReport {
     const ProgramProof& proof;
     std::string program{}, certificate{}, model{};  // files; empty: not written
     std::string model_sha256{};
+    std::uint32_t override_percent = 100;
+    bool covers_lower = true;  // lower overrides take the same path
     std::uint64_t certificate_bytes = 0;
     double spent_s = 0;
 };

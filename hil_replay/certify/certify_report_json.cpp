@@ -45,6 +45,8 @@ std::string describe_certify(const CertifyReport& report) {
     const Json document{{"program", report.program},
                         {"machine", report.machine.name},
                         {"certified", report.proof.open.empty()},
+                        {"override_percent", report.override_percent},
+                        {"covers_lower_overrides", report.covers_lower},
                         {"promise", to_text(report.machine.guard.promise)},
                         {"seconds", report.path.seconds},
                         {"segments", report.path.segment_count()},

@@ -36,6 +36,7 @@ constexpr const char* kCertifyExample =
     "hil_replay/programs/spindle-tilting.ngc -o part.cert";
 constexpr const char* kCertifyPurpose =
     "Prove a whole program clear of contact, stops included (docs/guide/certify.md)";
+constexpr double kNoCapMmS = 1e6;
 constexpr double kPathShare = 0.4;  // of the time, about; for the line of progress
 
 struct CertifyArguments {
@@ -44,7 +45,7 @@ struct CertifyArguments {
     std::string output, model, rapid_cap = "off";
     bool is_partial = false;
     std::uint32_t threads = 0, override_percent = 100;
-    double blend_mm = MotionOptions{}.blend_mm;
+    double blend_mm = 0;
     JsonOutput json;
 };
 
@@ -80,6 +81,49 @@ std::string model_name(const CertifyArguments& arguments) {
     return (std::filesystem::path(arguments.output).parent_path() / stem).string() + ".model";
 }
 
+/// With --rapid-cap on the planner cuts feeds, too: a certificate of slower ones is not meant.
+bool are_feeds_reached(const CertifyArguments& arguments, const Machine& machine,
+                       const Program& program) {
+    const double cap_mm_min = 60 * machine.program_speed_mm_s;
+    for (const Move& move : program.moves) {
+        if (arguments.rapid_cap == "on" && move.feed_kind == FeedKind::per_minute &&
+            move.feed > cap_mm_min) {
+            fmt::print(stderr,
+                       "{}:{}: feed {:g} with the override is above program_speed_mm_min ({:g}). "
+                       "State a larger one in the machine file, or leave out --rapid-cap on.\n",
+                       escaped(arguments.gcode.program, 4096), move.line, move.feed, cap_mm_min);
+            return false;
+        }
+    }
+    return true;
+}
+
+/// Whether the planner rounds a corner: a lower feed then takes another path there.
+bool rounds_corners(const CertifyArguments& arguments, const Program& program) {
+    return arguments.blend_mm > 0 ||
+           std::any_of(program.moves.begin(), program.moves.end(),
+                       [](const Move& move) { return move.blend_mm > 0; });
+}
+
+/// The default name of the model is checked here, for no option names it.
+bool is_model_apart(const CertifyArguments& arguments) {
+    const std::string model = model_name(arguments);
+    std::vector<std::string> others{arguments.machine.file, arguments.gcode.program,
+                                    arguments.output};
+    if (arguments.json.files && arguments.json.files->json != nullptr) {
+        others.push_back(*arguments.json.files->json);
+    }
+    for (const std::string& other : others) {
+        if (std::filesystem::weakly_canonical(model) == std::filesystem::weakly_canonical(other)) {
+            fmt::print(stderr,
+                       "{}: the model would replace this file. Name another with --model.\n",
+                       escaped(model, 4096));
+            return false;
+        }
+    }
+    return true;
+}
+
 /// The program's moves. False: `code` is the exit code, and what is wrong is printed.
 bool read_moves(const CertifyArguments& arguments, const LoadedMachine& loaded,
                 GcodeResult& reading, int& code) {
@@ -102,7 +146,7 @@ bool read_moves(const CertifyArguments& arguments, const LoadedMachine& loaded,
         return false;
     }
     scale_feeds(reading.program, static_cast<int>(arguments.override_percent));
-    return true;
+    return are_feeds_reached(arguments, machine, reading.program);
 }
 
 /// The path of the program; empty after a fault, which is printed.
@@ -111,8 +155,10 @@ ChordPath plan_path(const CertifyArguments& arguments, const Machine& machine,
     MotionOptions motion;
     motion.blend_mm = arguments.blend_mm;
     motion.cap_rapids = arguments.rapid_cap == "on";
+    Machine unlimited = machine;  // no control has to keep a cap of feeds
+    unlimited.program_speed_mm_s = motion.cap_rapids ? machine.program_speed_mm_s : kNoCapMmS;
     PlannedPath planned = plan_chord_path(
-        machine, reading.program, motion, {}, [&](double program_s, std::uint32_t line) {
+        unlimited, reading.program, motion, {}, [&](double program_s, std::uint32_t line) {
             if (progress.is_due()) {
                 progress.show(program_s, kPathShare * line / std::max(reading.line_count, 1U),
                               fmt::format("line {}", line));
@@ -196,6 +242,9 @@ bool write_files(const CertifyArguments& arguments, const LoadedMachine& loaded,
 
 int run_certify(const CertifyArguments& arguments) {
     const auto begin = std::chrono::steady_clock::now();
+    if (!is_model_apart(arguments)) {
+        return kExitUsage;
+    }
     LoadedMachine loaded;
     if (const int code = load(arguments.machine, loaded); code != kExitClean) {
         return code;
@@ -219,7 +268,9 @@ int run_certify(const CertifyArguments& arguments) {
                          .tasks = tasks,
                          .path = path,
                          .proof = *proof,
-                         .program = escaped(arguments.gcode.program, 4096)};
+                         .program = escaped(arguments.gcode.program, 4096),
+                         .override_percent = arguments.override_percent,
+                         .covers_lower = !rounds_corners(arguments, reading.program)};
     if (!write_files(arguments, loaded, reading, report)) {
         return kExitInternal;
     }

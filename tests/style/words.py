@@ -14,11 +14,11 @@ import sys
 
 from sources import finish, read_text, tracked_files
 
-# Pages, most words of all of them: a limit against growth. The first four sum to 54,067.
+# Pages, most words of all of them: a limit against growth. The first four sum to 54,128.
 SHELVES = {
-    "guide": (["README.md", "docs/guide/*"], 10_705),
+    "guide": (["README.md", "docs/guide/*"], 10_760),
     "theory": (["docs/theory/*"], 14_097),
-    "reference": (["docs/reference/*"], 20_475),
+    "reference": (["docs/reference/*"], 20_481),
     "measurements and decisions": (["docs/measurements/*", "docs/decisions/*"], 8_790),
     "rules": (["CONTRIBUTING.md", "docs/glossary.md", "docs/style.md"], 3_760),
 }

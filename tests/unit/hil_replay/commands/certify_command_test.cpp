@@ -81,6 +81,37 @@ TEST_F(CertifyCommand, NamesTheSubroutineFilesThatItRead) {
     EXPECT_EQ(first, sum_with("G1 X1"));
 }
 
+// A lower feed rounds a corner along another path, which the certificate has not got.
+TEST_F(CertifyCommand, CoversNoLowerOverrideWhereCornersAreRounded) {
+    const std::string start = "G21 G90 G94 F600\n";
+    const std::string exact = shop.write("exact.ngc", start + "G1 X1\nM2\n");
+    const std::string rounded = shop.write("round.ngc", start + "G64 P1\nG1 X1\nG1 Y1\nM2\n");
+    EXPECT_EQ(run(machine + exact + " -o p.cert"), kExitClean) << out << err;
+    EXPECT_EQ(out.find("no lower one"), std::string::npos) << out;
+    EXPECT_EQ(run(machine + rounded + " -o p.cert"), kExitClean) << out << err;
+    EXPECT_NE(out.find("for an override of 100 % alone, no lower one"), std::string::npos) << out;
+    EXPECT_EQ(run(machine + exact + " -o p.cert --blend-mm 1"), kExitClean) << out << err;
+    EXPECT_NE(out.find("no lower one"), std::string::npos) << out;
+}
+
+TEST_F(CertifyCommand, CutsNoFeed) {
+    const std::string fast = shop.write("fast.ngc", "G21 G90 G94 F20000\nG1 X1\nM2\n");
+    EXPECT_EQ(run(machine + fast + " -o p.cert --rapid-cap on"), kExitInput);
+    EXPECT_NE(err.find("fast.ngc:2: feed 20000"), std::string::npos) << err;
+    EXPECT_FALSE(exists("p.cert"));
+}
+
+TEST_F(CertifyCommand, LosesNoFileToTheDefaultNameOfTheModel) {
+    const std::string exact = shop.write("exact.ngc", "G21 G90 G94 F600\nG1 X1\nM2\n");
+    const std::string as_model =
+        shop.write("paper-trunnion.model", "G21 G90 G94 F600\nG1 X1\nM2\n");
+    EXPECT_EQ(run(machine + exact + " -o paper-trunnion.model"), kExitUsage);
+    EXPECT_EQ(run(machine + as_model + " -o p.cert"), kExitUsage);
+    EXPECT_EQ(run(machine + exact + " -o p.cert --json=paper-trunnion.model"), kExitUsage);
+    EXPECT_NE(err.find("Name another with --model"), std::string::npos) << err;
+    EXPECT_EQ(test::content_of(as_model), "G21 G90 G94 F600\nG1 X1\nM2\n");
+}
+
 TEST_F(CertifyCommand, RefusesWhatItCannotRead) {
     const std::string unread = shop.write("part.ngc", "G21 G90\nG1 X1\n");
     EXPECT_EQ(run(machine + unread + " -o p.cert"), kExitInput);
